@@ -1,0 +1,70 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "core/base/error.h"
+
+namespace slabcast {
+
+struct TransferPoint {
+    double value = 0.0;
+    glm::dvec3 color{1.0}; // sRGB-encoded, 0 to 1
+    double opacity = 0.0;  // of opacityUnitMm of this material
+};
+
+/// Piecewise linear in opacity and in encoded colour; two points at one value make a step (the second holds from
+/// the value on). Outside the points the end values hold.
+struct TransferFunction {
+    std::string name;
+    std::string unit;
+    double opacityUnitMm = 1.0;
+    std::vector<TransferPoint> points;
+};
+
+/// Largest opacity that a TF keeps: extinction stays finite. For renderer and references alike.
+inline constexpr double kMaxOpacity = 1.0 - 1.0 / 16777216.0;
+
+/// Checks order, ranges and finiteness; clamps opacity to kMaxOpacity.
+/// Fails: InvalidTransferFunction, with the path of the offending entry as `points[2].opacity`.
+/// Tested by: transfer_function_test.cpp
+Result<TransferFunction> validated(TransferFunction tf);
+
+struct TransferSample {
+    glm::dvec3 color{0.0}; // sRGB-encoded
+    double opacity = 0.0;  // of opacityUnitMm
+};
+
+TransferSample evaluate(const TransferFunction& tf, double value);
+
+/// -ln(1 - opacity) / opacityUnitMm: the extinction coefficient in 1/mm.
+double extinctionPerMm(double opacity, double opacityUnitMm);
+
+/// Where compositing happens. Display: encoded values are blended, as most viewers do. Linear: light is blended.
+enum class CompositingSpace : std::uint8_t { Display, Linear };
+
+const char* name(CompositingSpace space);
+glm::dvec3 linearFromSrgb(glm::dvec3 encoded);
+glm::dvec3 srgbFromLinear(glm::dvec3 linear);
+
+/// The TF as the GPU filters it: texel k at value firstValue + k * (lastValue - firstValue) / (size - 1);
+/// rgb in the compositing space (not premultiplied), alpha = extinction in 1/mm.
+struct TransferTable {
+    double firstValue = 0.0;
+    double lastValue = 1.0;
+    std::vector<glm::vec4> texels;
+};
+
+/// Spans the part of [dataMin, dataMax] in which the TF varies, one texel per integer value where that fits
+/// `maxSize` and the data are integers (then every knot at an integer is exact), else `maxSize` texels.
+/// Values are rounded to fp16, as the texture holds them. A texel is exactly zero in alpha where the TF is.
+/// Tested by: transfer_table_test.cpp
+TransferTable makeTable(const TransferFunction& tf, double dataMin, double dataMax,
+                        bool integerData, CompositingSpace space, int maxSize = 4096);
+
+/// Bilinear texture lookup of the table, as the shader does it, in float64.
+glm::dvec4 lookUp(const TransferTable& table, double value);
+
+} // namespace slabcast

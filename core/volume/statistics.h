@@ -1,0 +1,25 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/volume/volume.h"
+
+namespace slabcast {
+
+/// Of the data values (rescaled). The histogram's 256 bins divide [min, max] evenly.
+struct VolumeStatistics {
+    double min = 0.0;
+    double max = 0.0;
+    double mean = 0.0;
+    double standardDeviation = 0.0;
+    std::array<std::int64_t, 256> histogram{};
+};
+
+/// Cost: two passes over the voxels, all cores. Tested by: volume_test.cpp
+VolumeStatistics computeStatistics(const Volume& volume);
+
+/// CT where the file says so or where a signed range reaches from air (-900 or below) to beyond water; else as the file says.
+Modality likelyModality(const Volume& volume, const VolumeStatistics& statistics);
+
+} // namespace slabcast
