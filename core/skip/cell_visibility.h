@@ -22,11 +22,13 @@ struct CellVisibility {
     bool visible(std::uint16_t minCode, std::uint16_t maxCode) const {
         return firstVisible[minCode] <= reach[maxCode];
     }
-    bool anyVisible() const; // over all codes that may occur
+    /// Whether any cell of the volume is: exact, from the smallest and largest code. Cost: one pass over the codes.
+    bool anyVisible() const;
 };
 
 /// For post-classification: the table is non-zero anywhere between the cell's minimum and maximum, widened by one
-/// table texel and by `filterErrorSampled` (what the texture unit's filter may add, in sampled units).
+/// table texel and by `filterErrorSampled` (what the texture unit's filter may add, in sampled units). Where higher
+/// codes are lower values, table texels are counted from the table's end. At most 65,535 table texels.
 /// Tested by: cell_visibility_test.cpp
 CellVisibility cellVisibility(const TexelCodes& codes, const Texels& texels,
                               const TransferTable& table, double filterErrorSampled);

@@ -27,7 +27,8 @@ struct TransferFunction {
 /// Largest opacity that a TF keeps: extinction stays finite. For renderer and references alike.
 inline constexpr double kMaxOpacity = 1.0 - 1.0 / 16777216.0;
 
-/// Checks order, ranges and finiteness; clamps opacity to kMaxOpacity.
+/// Checks order, ranges and finiteness (values within float32), at most two points at one value; clamps opacity to
+/// kMaxOpacity.
 /// Fails: InvalidTransferFunction, with the path of the offending entry as `points[2].opacity`.
 /// Tested by: transfer_function_test.cpp
 Result<TransferFunction> validated(TransferFunction tf);
@@ -58,13 +59,17 @@ struct TransferTable {
 };
 
 /// Spans the part of [dataMin, dataMax] in which the TF varies, one texel per integer value where that fits
-/// `maxSize` and the data are integers (then every knot at an integer is exact), else `maxSize` texels.
-/// Values are rounded to fp16, as the texture holds them. A texel is exactly zero in alpha where the TF is.
+/// `maxSize` and the data are integers (then every knot at an integer is exact), else `maxSize` texels; two equal
+/// ones where the TF is constant over the data.
+/// Values are rounded to fp16, as the texture holds them; a visible texel keeps at least the smallest half.
+/// A texel is exactly zero in alpha where the TF is, with one exception: of a peak between two texels, higher than
+/// both, the nearer texel takes the whole, so that nothing visible is lost for being narrow. A step becomes a ramp
+/// from one texel to the next; a gap narrower than a texel is filled.
 /// Tested by: transfer_table_test.cpp
 TransferTable makeTable(const TransferFunction& tf, double dataMin, double dataMax,
                         bool integerData, CompositingSpace space, int maxSize = 4096);
 
-/// Bilinear texture lookup of the table, as the shader does it, in float64.
+/// Linear texture lookup of the table, as the shader does it, in float64.
 glm::dvec4 lookUp(const TransferTable& table, double value);
 
 } // namespace slabcast

@@ -19,7 +19,8 @@ struct VolumeStatistics {
 /// Cost: two passes over the voxels, all cores. Tested by: volume_test.cpp
 VolumeStatistics computeStatistics(const Volume& volume);
 
-/// CT where the file says so or where a signed range reaches from air (-900 or below) to beyond water; else as the file says.
+/// As the file says. Where it says nothing: CT if the data reach from air (-900 or below) to beyond
+/// water (0), else unknown.
 Modality likelyModality(const Volume& volume, const VolumeStatistics& statistics);
 
 } // namespace slabcast

@@ -19,7 +19,8 @@ bool isExact(TexelFormat format);
 
 /// The texture's host copy. What the shader's field function returns for a texel is `sampled`
 /// (R8, R16: texel/max; R16F, R32fExact: the float; Rg8Exact: high*256+low), and the data value is
-/// `valueScale * sampled + valueBias`.
+/// `valueScale * sampled + valueBias`. The scale is positive, also for data with a negative slope: sampled order is
+/// value order.
 struct Texels {
     TexelFormat format = TexelFormat::R8;
     glm::ivec3 dims{0};
@@ -31,7 +32,9 @@ struct Texels {
 };
 
 /// Cost: one pass, all cores. R16F is offset and scaled so that integers of up to 12 bits stay exact
-/// (fp16 holds integers exactly to +-2048) and wider data use the format's best range.
+/// (fp16 holds integers exactly to +-2048) and wider data use the format's best range. R8, R16 and Rg8Exact keep
+/// integers whose range fits exactly, and divide [min, max] into 255 or 65,535 even steps otherwise. R32fExact keeps
+/// floats as they are and integers within 2^25 steps. Values outside the statistics are clamped by integer formats.
 /// Tested by: texels_test.cpp
 Texels encodeTexels(const Volume& volume, const VolumeStatistics& statistics, TexelFormat format);
 

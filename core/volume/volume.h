@@ -52,7 +52,7 @@ struct Volume {
     double rescaleSlope = 1.0;
     double rescaleIntercept = 0.0;
     std::int64_t nonFiniteVoxels =
-        0; // NaN and infinities found on load, since replaced by the lowest finite value
+        0; // NaN and infinities found on load, since replaced by the lowest finite data value
     std::vector<std::byte> voxels;
 
     /// Data value of one voxel. For tests and small loops: bulk code dispatches on the type once.
@@ -61,8 +61,10 @@ struct Volume {
 
 /// Everything that a loader must hold before a volume may be used: positive dims whose product fits,
 /// as many bytes as they ask for, finite positive spacing, direction cosines that span space,
-/// finite non-zero slope. Replaces and counts non-finite voxels.
-/// Fails: EmptyVolume, SizeOverflow, FileTruncated, InvalidGeometry. Tested by: volume_test.cpp
+/// finite non-zero slope. Replaces and counts non-finite voxels, and those outside float32's range.
+/// Bytes after the last voxel are dropped; direction cosines become exactly unit length.
+/// Fails: EmptyVolume, SizeOverflow, FileTruncated, InvalidGeometry, InvalidArgument (rescaling).
+/// Tested by: volume_test.cpp
 Result<Volume> validated(Volume volume);
 
 /// dims.x * dims.y * dims.z * bytes, or SizeOverflow / EmptyVolume. For loaders, before they allocate.

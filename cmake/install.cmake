@@ -1,0 +1,37 @@
+# What `cmake --install` lays down: one static library, its headers and its export file per component.
+# Consumers write find_package(Slabcast COMPONENTS egl io) and link Slabcast::core, Slabcast::egl, Slabcast::io.
+include(CMakePackageConfigHelpers)
+
+set(packageDir ${CMAKE_INSTALL_LIBDIR}/cmake/Slabcast)
+set(headerRoot ${CMAKE_INSTALL_INCLUDEDIR}/slabcast)
+set(headers_core core)
+set(headers_egl platform/egl)
+set(headers_io platform/io)
+
+foreach(component IN ITEMS core egl io)
+    if(NOT TARGET slabcast_${component})
+        continue()
+    endif()
+    install(TARGETS slabcast_${component} EXPORT Slabcast_${component}
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(EXPORT Slabcast_${component} NAMESPACE Slabcast::
+        FILE Slabcast_${component}.cmake DESTINATION ${packageDir})
+    # Includes keep their form: "core/volume/volume.h" here and there.
+    install(DIRECTORY ${headers_${component}}/ DESTINATION ${headerRoot}/${headers_${component}}
+        FILES_MATCHING PATTERN "*.h" PATTERN "itk_*" EXCLUDE) # what includes ITK stays inside
+endforeach()
+
+if(TARGET slabcast)
+    install(TARGETS slabcast RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+    install(PROGRAMS perf/report.py DESTINATION ${CMAKE_INSTALL_DATADIR}/slabcast/perf)
+    install(FILES perf/report_data.py perf/report_plots.py perf/report_page.py perf/report.css
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/slabcast/perf)
+endif()
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+configure_package_config_file(cmake/SlabcastConfig.cmake.in ${PROJECT_BINARY_DIR}/SlabcastConfig.cmake
+    INSTALL_DESTINATION ${packageDir} NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/SlabcastConfigVersion.cmake
+    COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/SlabcastConfig.cmake ${PROJECT_BINARY_DIR}/SlabcastConfigVersion.cmake
+    DESTINATION ${packageDir})

@@ -1,0 +1,77 @@
+#include "core/frame/frame_block.h"
+
+#include "core/frame/scene.h"
+
+namespace slabcast {
+
+namespace {
+
+glm::vec4 packed(glm::dvec3 xyz, double w) { return glm::vec4(glm::dvec4(xyz, w)); }
+
+/// Sampled value of an exact texel from what texelFetch returns in r and g.
+glm::vec4 decodeWeights(TexelFormat format) {
+    return format == TexelFormat::Rg8Exact ? glm::vec4(255.0F * 256.0F, 255.0F, 0.0F, 0.0F)
+                                           : glm::vec4(1.0F, 0.0F, 0.0F, 0.0F);
+}
+
+/// Table coordinate (of texel centres) = sampled * x + y.
+glm::dvec2 tableMap(const Texels& texels, const TransferTable& table) {
+    const double size = static_cast<double>(table.texels.size());
+    const double span = table.lastValue - table.firstValue;
+    if (size < 2.0 || span <= 0.0) {
+        return {0.0, 0.5};
+    }
+    const double perValue = (size - 1.0) / (span * size);
+    return {texels.valueScale * perValue, (texels.valueBias - table.firstValue) * perValue + 0.5 / size};
+}
+
+void fillSkip(FrameBlock& block, const ProximityCloud& cloud, glm::ivec3 dims) {
+    block.skipMap = packed(glm::dvec3(dims) / static_cast<double>(cloud.blockEdgeVoxels), cloud.quantumMm);
+    block.skipBlocks = glm::ivec4(cloud.blocks - 1, 0);
+}
+
+void fillShading(FrameBlock& block, const ShadingParameters& shading, const VolumeGeometry& geometry,
+                 double valueScale) {
+    // A difference over one voxel is dims times its derivative by uvw; gradients are covectors: inverse transpose.
+    const glm::dmat3 uvwFromModel(geometry.uvwFromModel());
+    const glm::dmat3 patientRows = glm::transpose(glm::dmat3(geometry.modelFromUvw()));
+    for (int row = 0; row < 3; ++row) {
+        const glm::dvec3 covector = uvwFromModel[row] * glm::dvec3(geometry.dims) * valueScale;
+        block.gradientRow[row] = packed(covector, row == 0 ? shading.gradientFloorPerMm : 0.0);
+        block.patientRow[row] = packed(patientRows[row], 0.0);
+    }
+    block.material = glm::vec4(
+        glm::dvec4(shading.ambient, shading.diffuse, shading.specular, shading.shininess));
+}
+
+} // namespace
+
+FrameBlock makeFrameBlock(const RayFrame& f, const Frustum& frustum, const Scene& scene, const FramePlan& plan) {
+    const bool shells = f.lattice.kind == LatticeKind::Shells;
+    FrameBlock block{};
+    block.centre0 = packed(f.centre0, f.lattice.total / 2.0);
+    block.centreX = packed(f.centreX, (f.nearDepth - f.sphereCentre.z) / f.spacing);
+    block.centreY = packed(f.centreY, f.nearDepth);
+    block.direction0 = packed(f.direction0, f.spacing);
+    block.directionX = packed(f.directionX, 1.0 / f.spacing);
+    block.directionY = packed(f.directionY, f.mmPerViewUnit);
+    block.tangent = glm::vec4(glm::dvec4(f.tangent0, f.tangentPerPixel));
+    block.sphere = packed(f.sphereCentre, f.sphereDistance);
+    block.viewTangent = glm::vec4(glm::dvec4(f.tangent0, 2.0 / (frustum.right - frustum.left),
+                                             2.0 / (frustum.top - frustum.bottom)));
+    block.viewport = glm::vec4(glm::dvec4(f.viewportCentre, shells ? 1.0 : 0.0, plan.terminationAlpha));
+    const glm::dvec2 map = tableMap(scene.texels(), scene.table());
+    const ClassifiedTexels* classified = scene.classified();
+    block.tableMap = packed(glm::dvec3(map, classified != nullptr ? 1.0 / classified->referenceLengthMm : 0.0), 0.0);
+    block.decode = decodeWeights(scene.texels().format);
+    if (scene.cloud() != nullptr) {
+        fillSkip(block, *scene.cloud(), scene.geometry().dims);
+    }
+    if (scene.look().shading) {
+        fillShading(block, *scene.look().shading, scene.geometry(), scene.texels().valueScale);
+    }
+    block.counts.z = plan.layersPerPlane;
+    return block;
+}
+
+} // namespace slabcast

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+
+#include <glm/glm.hpp>
+
+#include "core/frame/frame_plan.h"
+#include "core/frame/lattice.h"
+
+namespace slabcast {
+
+/// The uniform block of gles_shaders/frame.glsl, std140: vec4 and ivec4 only, in its order. Change both.
+struct FrameBlock {
+    glm::vec4 centre0, centreX, centreY;
+    glm::vec4 direction0, directionX, directionY;
+    glm::vec4 tangent;
+    glm::vec4 sphere;
+    glm::vec4 viewTangent;
+    glm::vec4 viewport;
+    glm::vec4 tableMap;
+    glm::vec4 skipMap;
+    glm::vec4 decode;
+    std::array<glm::vec4, 3> gradientRow;
+    std::array<glm::vec4, 3> patientRow;
+    glm::vec4 material;
+    glm::ivec4 counts;
+    glm::ivec4 skipBlocks;
+};
+static_assert(sizeof(FrameBlock) == 16 * 22);
+
+class Scene;
+
+/// Rounds a view's float64 coefficients to what the shaders take. Pure.
+FrameBlock makeFrameBlock(const RayFrame& frame, const Frustum& frustum, const Scene& scene, const FramePlan& plan);
+
+} // namespace slabcast

@@ -1,0 +1,234 @@
+#include "core/frame/frame_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace slabcast {
+
+namespace {
+
+constexpr int kMaxTotalLayers = 1 << 20;
+/// Layers per plane where nothing was measured: the middle of the core paper's best range (Fig. 4).
+constexpr int kUnmeasuredLayersPerPlane = 16;
+/// Above this share of occupied blocks a skip fetch per layer costs more than the few layers that it saves.
+constexpr double kWorthSkipping = 0.95;
+constexpr double kHalfStep8Bit = 0.5 / 255.0;
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+}
+
+Result<void> checkRange(const char* what, double value, double low, double high) {
+    if (value >= low && value <= high) {
+        return {};
+    }
+    return fail(ErrorCode::InvalidArgument, std::string(what) + " is " + number(value) + ": give a number from " +
+                                                number(low) + " to " + number(high));
+}
+
+Result<void> check(const Settings& s) {
+    const struct {
+        const char* what;
+        std::optional<double> value;
+        double low, high;
+    } ranges[] = {
+        {"layer spacing (voxels)", s.layerSpacingVoxels, 1e-3, 1e6},
+        {"total layers", s.totalLayers, 1, kMaxTotalLayers},
+        {"planes", s.planes, 1, kMaxTotalLayers},
+        {"layers per plane", s.layersPerPlane, 1, kMaxTotalLayers},
+        {"termination opacity", s.termination, 0.0, 1.0},
+    };
+    for (const auto& range : ranges) {
+        if (range.value) {
+            if (Result<void> ok = checkRange(range.what, *range.value, range.low, range.high); !ok) {
+                return ok;
+            }
+        }
+    }
+    if (s.planes && s.layersPerPlane) {
+        return fail(ErrorCode::InvalidArgument, "planes and layers per plane are both set: give one, the total "
+                                                "number of layers decides the other");
+    }
+    return {};
+}
+
+int planesFor(int total, int layersPerPlane) { return (total + layersPerPlane - 1) / layersPerPlane; }
+
+/// The decisions of one plan in the making: each writes what it chose and why.
+struct Planner {
+    const SceneFacts& facts;
+    const Settings& settings;
+    const gl::Caps& caps;
+    FramePlan plan;
+
+    void because(std::string what, std::string why) { plan.reasons.push_back({std::move(what), std::move(why)}); }
+
+    void chooseLattice() {
+        const int total = totalLayers(settings, facts);
+        const double spacing = settings.totalLayers ? 2.0 * facts.sphere.radiusMm / total
+                                                    : settings.layerSpacingVoxels * facts.smallestVoxelEdgeMm;
+        plan.lattice = {settings.lattice, total, spacing};
+        because("layers " + std::to_string(total),
+                "one every " + number(spacing) + " mm (" + number(spacing / facts.smallestVoxelEdgeMm) +
+                    " voxels) over the bounding sphere's diameter of " + number(2.0 * facts.sphere.radiusMm) + " mm");
+    }
+
+    SegmentForm formFor(int layersPerPlane) const {
+        if (settings.form != SegmentForm::Auto) {
+            return settings.form;
+        }
+        return unrollLengthFor(layersPerPlane) == 0 || caps.isSoftware ? SegmentForm::Loop : SegmentForm::Unrolled;
+    }
+
+    Ratio chooseRatio(std::span<const RatioMeasurement> measurements) {
+        const int total = plan.lattice.total;
+        if (settings.planes || settings.layersPerPlane) {
+            const int wanted = settings.planes ? planesFor(total, std::min(*settings.planes, total))
+                                               : std::min(*settings.layersPerPlane, total);
+            const int planes = settings.planes ? std::min(*settings.planes, total) : planesFor(total, wanted);
+            const Ratio ratio{planes, wanted, formFor(wanted)};
+            because("ratio " + name(ratio), "asked for");
+            return ratio;
+        }
+        const auto best = std::min_element(measurements.begin(), measurements.end(),
+                                           [](const auto& a, const auto& b) { return a.frameMs < b.frameMs; });
+        if (best != measurements.end()) {
+            std::string all;
+            for (const RatioMeasurement& m : measurements) {
+                all += (all.empty() ? "" : ", ") + name(m.ratio) + " " + number(m.frameMs) + " ms";
+            }
+            because("ratio " + name(best->ratio), "fastest of those measured on this device: " + all);
+            return best->ratio;
+        }
+        const int layersPerPlane = std::min(kUnmeasuredLayersPerPlane, total);
+        const Ratio ratio{planesFor(total, layersPerPlane), layersPerPlane, formFor(layersPerPlane)};
+        because("ratio " + name(ratio), "nothing was measured on this device: a middle ratio");
+        return ratio;
+    }
+
+    void chooseSkip() {
+        if (settings.skip) {
+            plan.variant.skip = *settings.skip;
+            because(std::string("skip ") + name(*settings.skip), "asked for");
+        } else if (facts.occupiedFraction > kWorthSkipping) {
+            plan.variant.skip = SkipStructure::None;
+            because("skip none", number(100.0 * facts.occupiedFraction) + " % of the blocks hold something visible");
+        } else {
+            plan.variant.skip = SkipStructure::Proximity;
+            because("skip proximity",
+                    "only " + number(100.0 * facts.occupiedFraction) + " % of the blocks hold something visible");
+        }
+    }
+
+    void chooseTermination() {
+        if (!settings.termination) {
+            because("no termination", "asked for");
+            return;
+        }
+        // The densest segment that this TF can make; obliqueness lengthens it by less than 2 up to 120 degrees.
+        const double depth = facts.maxExtinctionPerMm * plan.lattice.spacingMm * plan.layersPerPlane * 2.0;
+        if (plan.layersPerPlane == 1 || 1.0 - std::exp(-depth) < *settings.termination) {
+            because("no termination", plan.layersPerPlane == 1
+                                          ? "a segment of one layer has nothing to leave out"
+                                          : "no segment under this transfer function can become opaque enough");
+            return;
+        }
+        plan.variant.terminates = true;
+        plan.terminationAlpha = *settings.termination;
+        because("termination at " + std::to_string(*settings.termination), "dense segments are left early");
+    }
+
+    void chooseTarget() {
+        plan.target = settings.target;
+        plan.space = settings.space;
+        if (settings.space == CompositingSpace::Linear && settings.target == TargetFormat::Rgba8) {
+            plan.target = TargetFormat::Rgba16f;
+            because("target rgba16f", "linear light in 8 bits would band in the shadows");
+        }
+        const double least =
+            1.0 - std::exp(-facts.minPositiveExtinctionPerMm * plan.lattice.spacingMm * plan.layersPerPlane);
+        if (plan.target == TargetFormat::Rgba8 && least < kHalfStep8Bit) {
+            because("warning", "the faintest material adds " + number(least) +
+                                   " per plane, below rgba8's rounding (1/510): --target rgba16f or fewer planes "
+                                   "keep it");
+        }
+    }
+};
+
+} // namespace
+
+const char* name(TargetFormat format) { return format == TargetFormat::Rgba8 ? "rgba8" : "rgba16f"; }
+
+std::string name(const Ratio& ratio) {
+    return std::to_string(ratio.planes) + "x" + std::to_string(ratio.layersPerPlane) +
+           (ratio.form == SegmentForm::Unrolled ? " unrolled" : " loop");
+}
+
+int totalLayers(const Settings& settings, const SceneFacts& facts) {
+    return settings.totalLayers.value_or(
+        layersToCover(facts.sphere.radiusMm, settings.layerSpacingVoxels * facts.smallestVoxelEdgeMm));
+}
+
+std::vector<Ratio> ratioCandidates(const Settings& settings, const SceneFacts& facts) {
+    const int total = totalLayers(settings, facts);
+    std::vector<Ratio> candidates;
+    for (const int layers : {1, 8, 16, 32, 64, total}) {
+        for (const SegmentForm form : {SegmentForm::Unrolled, SegmentForm::Loop}) {
+            const bool allowed = settings.form == SegmentForm::Auto || settings.form == form;
+            const bool exists = form == SegmentForm::Loop || unrollLengthFor(layers) != 0;
+            const Ratio ratio{planesFor(total, std::min(layers, total)), std::min(layers, total), form};
+            if (allowed && exists && std::find(candidates.begin(), candidates.end(), ratio) == candidates.end()) {
+                candidates.push_back(ratio);
+            }
+        }
+    }
+    return candidates;
+}
+
+Result<FramePlan> plan(const SceneFacts& facts, const Settings& settings, const gl::Caps& caps,
+                       std::span<const RatioMeasurement> measurements) {
+    if (Result<void> ok = check(settings); !ok) {
+        return tl::unexpected(ok.error());
+    }
+    Planner planner{facts, settings, caps, {}};
+    planner.chooseLattice();
+    if (planner.plan.lattice.total > kMaxTotalLayers) {
+        return fail(ErrorCode::InvalidArgument, "the layer spacing asks for " +
+                                                    std::to_string(planner.plan.lattice.total) +
+                                                    " layers: at most 1048576; widen --layer-spacing");
+    }
+    const Ratio ratio = planner.chooseRatio(measurements);
+    if (ratio.form == SegmentForm::Unrolled && unrollLengthFor(ratio.layersPerPlane) == 0) {
+        return fail(ErrorCode::InvalidArgument, "segments of " + std::to_string(ratio.layersPerPlane) +
+                                                    " layers are too long to unroll: at most " +
+                                                    std::to_string(kUnrollLengths.back()) + ", or the loop form");
+    }
+    FramePlan& result = planner.plan;
+    result.planes = ratio.planes;
+    result.layersPerPlane = ratio.layersPerPlane;
+    result.variant.unroll = ratio.form == SegmentForm::Unrolled ? unrollLengthFor(ratio.layersPerPlane) : 0;
+    result.variant.classification = settings.classification;
+    result.variant.exactField = facts.exactField && settings.classification == Classification::Post;
+    result.variant.shaded = settings.shaded && settings.classification == Classification::Post;
+    planner.because(std::string("classification ") + name(settings.classification),
+                    !settings.shaded                                    ? "no shading: no gradients are fetched"
+                    : settings.classification == Classification::Post ? "shaded per sample"
+                                                                        : "shading is baked into the texels");
+    planner.chooseSkip();
+    planner.chooseTermination();
+    result.tighten = settings.tighten;
+    planner.because(settings.tighten ? "tight planes" : "10-gons",
+                    settings.tighten ? "each plane is the rectangle around what is visible in its slab"
+                                     : "each plane covers the bounding sphere's slice");
+    planner.chooseTarget();
+    result.drawsNothing = !facts.anythingVisible;
+    if (result.drawsNothing) {
+        planner.because("draws nothing", "the transfer function makes no value of this volume visible");
+    }
+    return std::move(planner.plan);
+}
+
+} // namespace slabcast

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/frame/lattice.h"
+#include "core/frame/shader_variant.h"
+#include "core/gl/caps.h"
+#include "core/transfer/transfer_function.h"
+
+namespace slabcast {
+
+/// What planes are blended into.
+enum class TargetFormat : std::uint8_t { Rgba8, Rgba16f };
+enum class SegmentForm : std::uint8_t { Auto, Unrolled, Loop };
+
+const char* name(TargetFormat format);
+
+/// What a user may ask for. Unset optionals are decided by the plan.
+struct Settings {
+    Classification classification = Classification::Post;
+    std::optional<SkipStructure> skip;
+    LatticeKind lattice = LatticeKind::Planar;
+    double layerSpacingVoxels = 1.0;   // of the smallest voxel edge
+    std::optional<int> totalLayers;    // instead of the spacing
+    std::optional<int> planes;         // at most one of planes and layersPerPlane
+    std::optional<int> layersPerPlane;
+    SegmentForm form = SegmentForm::Auto;
+    bool tighten = true;
+    TargetFormat target = TargetFormat::Rgba8;
+    CompositingSpace space = CompositingSpace::Display;
+    bool shaded = false;
+    /// Opacity at which a segment is left. An eighth of an 8-bit step is lost at most per segment.
+    std::optional<double> termination = 1.0 - 1.0 / 2048.0;
+};
+
+/// What a plan needs to know of the volume under its transfer function.
+struct SceneFacts {
+    BoundingSphere sphere;
+    double smallestVoxelEdgeMm = 1.0;
+    bool exactField = false;
+    bool anythingVisible = true;
+    double occupiedFraction = 1.0;         // of the skip structure's blocks
+    double maxExtinctionPerMm = 0.0;
+    double minPositiveExtinctionPerMm = 0.0;
+};
+
+/// One way to deal the layers out to planes.
+struct Ratio {
+    int planes = 1;
+    int layersPerPlane = 1;
+    SegmentForm form = SegmentForm::Loop;
+
+    bool operator==(const Ratio&) const = default;
+};
+
+std::string name(const Ratio& ratio); // "28x16 unrolled"
+
+/// What a ratio took on this device: the input of `auto`.
+struct RatioMeasurement {
+    Ratio ratio;
+    double frameMs = 0.0;
+};
+
+struct Reason {
+    std::string what;
+    std::string why;
+
+    bool operator==(const Reason&) const = default;
+};
+
+/// Everything that a frame does, decided. Two pictures are of the same settings when their plans are equal.
+struct FramePlan {
+    Lattice lattice;
+    int planes = 1;
+    int layersPerPlane = 1;
+    ShaderVariant variant;
+    bool tighten = false;
+    TargetFormat target = TargetFormat::Rgba8;
+    CompositingSpace space = CompositingSpace::Display;
+    double terminationAlpha = 1.0;
+    bool drawsNothing = false;
+    std::vector<Reason> reasons;
+
+    bool operator==(const FramePlan&) const = default;
+};
+
+/// Total layers that the settings ask for: the given number or enough for the sphere at the spacing.
+int totalLayers(const Settings& settings, const SceneFacts& facts);
+
+/// Ratios worth measuring for `auto`, from slicing to ray casting.
+std::vector<Ratio> ratioCandidates(const Settings& settings, const SceneFacts& facts);
+
+/// Pure: no GL, no clock. Leaves out what the scene does not need and says why.
+/// Fails: InvalidArgument (a number outside its range; planes and layersPerPlane both set; an unrolled form beyond
+/// the list). Tested by: frame_plan_test.cpp
+Result<FramePlan> plan(const SceneFacts& facts, const Settings& settings, const gl::Caps& caps,
+                       std::span<const RatioMeasurement> measurements);
+
+} // namespace slabcast

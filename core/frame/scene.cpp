@@ -1,0 +1,94 @@
+#include "core/frame/scene.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/skip/cell_visibility.h"
+
+namespace slabcast {
+
+Scene Scene::create(Volume volume, TexelFormat format, double filterErrorSampled) {
+    Scene scene;
+    scene.volumeName_ = volume.name;
+    scene.geometry_ = volume.geometry;
+    scene.integerData_ = !isFloatingPoint(volume.type) && volume.rescaleSlope == 1.0;
+    scene.statistics_ = computeStatistics(volume);
+    scene.texels_ = encodeTexels(volume, scene.statistics_, format);
+    // Relative to a difference of two texels: the widest difference there is bounds every cell's.
+    scene.filterErrorSampled_ =
+        filterErrorSampled * (scene.statistics_.max - scene.statistics_.min) / scene.texels_.valueScale;
+    return scene;
+}
+
+Result<void> Scene::setLook(const Look& look, const SkipOptions& skip, int maxTableSize) {
+    Result<TransferFunction> tf = validated(look.tf);
+    if (!tf) {
+        return tl::unexpected(tf.error());
+    }
+    look_ = look;
+    look_.tf = std::move(*tf);
+    if (look_.shading && look_.shading->gradientFloorPerMm <= 0.0) {
+        look_.shading->gradientFloorPerMm = defaultGradientFloorPerMm();
+    }
+    ++lookGeneration_;
+    table_ = makeTable(look_.tf, statistics_.min, statistics_.max, integerData_, look_.space, maxTableSize);
+    classified_.reset();
+    if (look_.classification == Classification::Pre) {
+        ClassifySettings settings;
+        if (look_.shading) {
+            settings.light = BakedLight{look_.bakedLightDirection, *look_.shading};
+        }
+        classified_ = classify(texels_, geometry_, table_, settings);
+    }
+    cloud_.reset();
+    return skip.structure == SkipStructure::Proximity ? buildCloud(skip.blockEdgeVoxels) : Result<void>{};
+}
+
+Result<void> Scene::buildCloud(int blockEdgeVoxels) {
+    const bool pre = classified_.has_value();
+    if (!pre && !codes_) {
+        codes_ = std::make_shared<TexelCodes>(encodeCodes(texels_));
+    }
+    const auto start = std::chrono::steady_clock::now();
+    const TexelCodes alpha = pre ? alphaCodes(*classified_) : TexelCodes{};
+    const CellVisibility visibility = pre ? cellVisibilityOfAlpha(alpha)
+                                          : cellVisibility(*codes_, texels_, table_, filterErrorSampled_);
+    Result<ProximityCloud> cloud = buildProximityCloud(visibility, geometry_, blockEdgeVoxels);
+    if (!cloud) {
+        return tl::unexpected(cloud.error());
+    }
+    cloud_ = std::move(*cloud);
+    cloudBuildMs_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    return {};
+}
+
+SceneFacts Scene::facts() const {
+    SceneFacts facts;
+    facts.sphere = geometry_.boundingSphere();
+    facts.smallestVoxelEdgeMm = geometry_.smallestVoxelEdgeMm();
+    facts.exactField = isExact(texels_.format);
+    if (cloud_) {
+        const glm::dvec3 blocks(cloud_->blocks);
+        facts.occupiedFraction =
+            static_cast<double>(cloud_->occupiedBlocks) / (blocks.x * blocks.y * blocks.z);
+    }
+    bool any = false;
+    facts.minPositiveExtinctionPerMm = std::numeric_limits<double>::max();
+    for (const glm::vec4& texel : table_.texels) {
+        const double extinction = static_cast<double>(texel.a);
+        facts.maxExtinctionPerMm = std::max(facts.maxExtinctionPerMm, extinction);
+        if (extinction > 0.0) {
+            any = true;
+            facts.minPositiveExtinctionPerMm = std::min(facts.minPositiveExtinctionPerMm, extinction);
+        }
+    }
+    facts.anythingVisible = any && (!cloud_ || cloud_->occupiedBlocks > 0);
+    return facts;
+}
+
+double Scene::defaultGradientFloorPerMm() const {
+    constexpr double kShareOfRangePerVoxel = 0.005;
+    return kShareOfRangePerVoxel * (statistics_.max - statistics_.min) / geometry_.smallestVoxelEdgeMm();
+}
+
+} // namespace slabcast

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/frame/frame_plan.h"
+#include "core/frame/proxy_stack.h"
+#include "core/skip/proximity_cloud.h"
+#include "core/transfer/preclassified.h"
+#include "core/transfer/shading.h"
+#include "core/transfer/transfer_function.h"
+#include "core/volume/texels.h"
+#include "core/volume/volume_texture.h"
+
+namespace slabcast {
+
+/// How a volume shall look.
+struct Look {
+    TransferFunction tf;
+    CompositingSpace space = CompositingSpace::Display;
+    Classification classification = Classification::Post;
+    std::optional<ShadingParameters> shading; // none: unlit
+    glm::dvec3 bakedLightDirection{0.0, -1.0, 0.0}; // patient space, towards the light; for pre-classified texels
+};
+
+struct SkipOptions {
+    SkipStructure structure = SkipStructure::Proximity;
+    int blockEdgeVoxels = 4;
+};
+
+/// A volume under a transfer function, on the host: what the renderer's textures are made from and can be made from
+/// again. No GL. Not thread-safe; heavy steps use all cores inside.
+class Scene {
+public:
+    /// Turns the voxels into texels and lets the voxels go, so that the peak is volume + texels.
+    /// `filterErrorSampled`: what the self-test found, relative to the difference of two texels.
+    static Scene create(Volume volume, TexelFormat format, double filterErrorSampled);
+
+    /// Replaces the look; builds the table, what pre-classification and skipping need, and nothing else.
+    /// Fails: InvalidTransferFunction, InvalidArgument. Cost: O(voxels) where texels or a cloud are built.
+    Result<void> setLook(const Look& look, const SkipOptions& skip, int maxTableSize);
+
+    SceneFacts facts() const;
+
+    const std::string& name() const { return volumeName_; }
+    const VolumeGeometry& geometry() const { return geometry_; }
+    const VolumeStatistics& statistics() const { return statistics_; }
+    const Texels& texels() const { return texels_; }
+    const Look& look() const { return look_; }
+    const TransferTable& table() const { return table_; }
+    const ClassifiedTexels* classified() const { return classified_ ? &*classified_ : nullptr; }
+    const ProximityCloud* cloud() const { return cloud_ ? &*cloud_ : nullptr; }
+    double cloudBuildMs() const { return cloudBuildMs_; }
+    /// Counts the looks: textures made from an older one are stale.
+    int lookGeneration() const { return lookGeneration_; }
+    /// Gradient magnitude below which shading fades where the look does not say: 0.5 % of the data's range per voxel.
+    double defaultGradientFloorPerMm() const;
+
+private:
+    Result<void> buildCloud(int blockEdgeVoxels);
+
+    std::string volumeName_;
+    VolumeGeometry geometry_;
+    bool integerData_ = true;
+    VolumeStatistics statistics_;
+    Texels texels_;
+    double filterErrorSampled_ = 0.0;
+    std::shared_ptr<const TexelCodes> codes_; // made when the first cloud is
+    Look look_;
+    TransferTable table_;
+    std::optional<ClassifiedTexels> classified_;
+    std::optional<ProximityCloud> cloud_;
+    double cloudBuildMs_ = 0.0;
+    int lookGeneration_ = 0;
+};
+
+} // namespace slabcast

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/frame/shader_text.h"
+
+namespace slabcast {
+
+enum class Classification : std::uint8_t { Post, Pre };
+enum class SkipStructure : std::uint8_t { None, Proximity };
+
+const char* name(Classification classification);
+const char* name(SkipStructure skip);
+
+/// Lengths of segments that are written out layer by layer.
+inline constexpr std::array<int, 10> kUnrollLengths = {1, 2, 4, 8, 12, 16, 24, 32, 48, 64};
+
+/// Shortest unrolled length that holds `layersPerPlane`, or 0 where none does: then only the loop form serves.
+int unrollLengthFor(int layersPerPlane);
+
+/// Which segment shader. A field exists only where it changes loop structure, resources or outputs; all else is a
+/// uniform, and what a field switches off is absent from the text.
+///
+/// | field          | off                            | on                                             |
+/// |----------------|--------------------------------|------------------------------------------------|
+/// | classification | Post: field + table            | Pre: one RGBA8 texture, colours baked          |
+/// | skip           | None                           | Proximity: one more texture, two tests         |
+/// | shaded         | colour as classified           | 6 more fields per visible sample (Post only)   |
+/// | exactField     | texture unit's filter          | 8 fetches, float32 (Post only)                 |
+/// | terminates     | every layer                    | leaves when nearly opaque                      |
+/// | unroll         | 0: loop                        | layers written out, from kUnrollLengths        |
+/// | counts         | draws                          | writes work counters instead of colour         |
+struct ShaderVariant {
+    Classification classification = Classification::Post;
+    SkipStructure skip = SkipStructure::None;
+    bool shaded = false;
+    bool exactField = false;
+    bool terminates = false;
+    int unroll = 0;
+    bool counts = false;
+
+    bool operator==(const ShaderVariant&) const = default;
+    auto operator<=>(const ShaderVariant&) const = default;
+
+    constexpr bool valid() const {
+        const bool listed = [this] {
+            for (const int length : kUnrollLengths) {
+                if (length == unroll) {
+                    return true;
+                }
+            }
+            return unroll == 0;
+        }();
+        const bool baked = classification == Classification::Pre;
+        return listed && !(baked && (shaded || exactField));
+    }
+};
+
+/// As logs and statistics show it: "post+proximity+shaded+terminate/unroll16".
+std::string name(const ShaderVariant& variant);
+
+/// All valid variants. For the test that walks them.
+std::vector<ShaderVariant> allVariants();
+
+/// Planes whose outlines fit the uniform block that every GLES 3.2 device has (16 KiB).
+inline constexpr int kMaxOutlines = 1024;
+
+struct ShaderPair {
+    std::string vertex;
+    std::string fragment;
+};
+
+Result<ShaderPair> shaderText(const ShaderVariant& variant);
+
+} // namespace slabcast

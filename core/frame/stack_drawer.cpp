@@ -1,0 +1,96 @@
+#include "core/frame/stack_drawer.h"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/gl/api.h"
+
+namespace slabcast {
+
+namespace {
+
+constexpr int kCorners = 10;
+
+/// A 10-gon around the unit circle, then the square.
+std::vector<glm::vec2> unitPolygons() {
+    std::vector<glm::vec2> vertices;
+    const double circumradius = 1.0 / std::cos(std::numbers::pi / kCorners);
+    for (int k = 0; k < kCorners; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / kCorners;
+        vertices.push_back(glm::vec2(circumradius * glm::dvec2(std::cos(angle), std::sin(angle))));
+    }
+    vertices.insert(vertices.end(), {{-1.0F, -1.0F}, {1.0F, -1.0F}, {1.0F, 1.0F}, {-1.0F, 1.0F}});
+    return vertices;
+}
+
+/// New storage at every upload: the driver keeps the old one until the GPU has read it, nothing waits.
+template <class T>
+void uploadBlock(GLuint binding, const gl::Buffer& buffer, const T* data, std::size_t bytes) {
+    gl::BindBufferBase(GL_UNIFORM_BUFFER, binding, buffer.id());
+    gl::BufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(bytes), data, GL_STREAM_DRAW);
+}
+
+} // namespace
+
+void StackDrawer::create() {
+    frameBlock_ = gl::Buffer::make("frame block");
+    outlineBlock_ = gl::Buffer::make("plane outlines");
+    polygons_ = gl::Buffer::make("unit polygons");
+    vertices_ = gl::VertexArray::make("unit polygons");
+    const std::vector<glm::vec2> vertices = unitPolygons();
+    gl::BindVertexArray(vertices_.id());
+    gl::BindBuffer(GL_ARRAY_BUFFER, polygons_.id());
+    gl::BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(glm::vec2)), vertices.data(),
+                   GL_STATIC_DRAW);
+    gl::EnableVertexAttribArray(0);
+    gl::VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
+}
+
+void StackDrawer::connect(const gl::Program& program) {
+    const struct {
+        const char* name;
+        GLuint binding;
+    } blocks[] = {{"FrameBlock", kFrameBinding}, {"OutlineBlock", kOutlineBinding}};
+    for (const auto& block : blocks) {
+        const GLuint index = gl::GetUniformBlockIndex(program.id(), block.name);
+        if (index != GL_INVALID_INDEX) {
+            gl::UniformBlockBinding(program.id(), index, block.binding);
+        }
+    }
+    program.use();
+    const char* const samplers[] = {"volumeTexels", "transferTable", "freeLengths"}; // GpuScene::bind()
+    for (int unit = 0; unit < 3; ++unit) {
+        gl::Uniform1i(program.uniform(samplers[unit]), unit);
+    }
+}
+
+void StackDrawer::draw(FrameBlock block, const ProxyStack& stack, bool tight) const {
+    const int planes = static_cast<int>(stack.outlines.size());
+    if (planes == 0) {
+        return;
+    }
+    const int planesPerOutline = (planes + kMaxOutlines - 1) / kMaxOutlines;
+    std::vector<glm::vec4> outlines;
+    outlines.reserve(kMaxOutlines);
+    for (const Outline& o : grouped(stack, planesPerOutline)) {
+        outlines.push_back(glm::vec4(glm::dvec4(o.centre, o.halfSize)));
+    }
+    outlines.resize(kMaxOutlines); // the block's declared size must be backed
+    block.counts = {stack.firstPlane, planes, block.counts.z, planesPerOutline};
+
+    uploadBlock(kFrameBinding, frameBlock_, &block, sizeof block);
+    uploadBlock(kOutlineBinding, outlineBlock_, outlines.data(), outlines.size() * sizeof(glm::vec4));
+    gl::BindVertexArray(vertices_.id());
+    const bool square = tight || planesPerOutline > 1;
+    gl::DrawArraysInstanced(GL_TRIANGLE_FAN, square ? kCorners : 0, square ? 4 : kCorners, planes);
+}
+
+void StackDrawer::forget() {
+    for (gl::Buffer* buffer : {&polygons_, &frameBlock_, &outlineBlock_}) {
+        buffer->forget();
+    }
+    vertices_.forget();
+}
+
+} // namespace slabcast

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "core/base/error.h"
+#include "core/gl/objects.h"
+
+namespace slabcast::gl {
+
+/// A framebuffer with textures of its own: layers in between, counters, pictures that are read back.
+/// Tested by: renderer_gl_test.cpp
+class ColorTargets {
+public:
+    /// One texture per format (GL_RGBA8, GL_RGBA16F or GL_RGBA32F). Does nothing where size and formats are the same.
+    /// Leaves the framebuffer bound. Fails: DeviceOutOfMemory (the framebuffer is not complete).
+    Result<void> resize(int width, int height, const std::vector<GLenum>& formats);
+
+    /// Makes it the draw framebuffer with its whole size as viewport, every texture filled with `color`.
+    void begin(glm::vec4 color = glm::vec4(0.0F)) const;
+
+    /// Waits for the GPU and reads one texture, rows from the bottom up. 8-bit values come as k/255.
+    std::vector<glm::vec4> read(std::size_t index = 0) const;
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    GLuint framebuffer() const { return framebuffer_.id(); }
+    GLuint texture(std::size_t index) const { return textures_[index].id(); }
+    std::int64_t bytes() const;
+    void forget(); // contextLost
+
+private:
+    int width_ = 0;
+    int height_ = 0;
+    std::vector<GLenum> formats_;
+    std::vector<Texture> textures_;
+    Framebuffer framebuffer_;
+};
+
+} // namespace slabcast::gl

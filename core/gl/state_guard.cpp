@@ -1,0 +1,147 @@
+#include "core/gl/state_guard.h"
+
+namespace slabcast::gl {
+
+namespace {
+
+constexpr std::array<GLenum, StateGuard::kSwitches> kSwitchNames = {
+    GL_BLEND,        GL_CULL_FACE,   GL_DEPTH_TEST, GL_DITHER, GL_RASTERIZER_DISCARD,
+    GL_SCISSOR_TEST, GL_STENCIL_TEST};
+
+struct PixelStore {
+    GLenum name;
+    GLint plain; // what tightly packed pixels need
+};
+
+constexpr std::array<PixelStore, StateGuard::kPixelStores> kPixelStoreNames = {{
+    {GL_UNPACK_ALIGNMENT, 1},
+    {GL_UNPACK_ROW_LENGTH, 0},
+    {GL_UNPACK_IMAGE_HEIGHT, 0},
+    {GL_UNPACK_SKIP_PIXELS, 0},
+    {GL_UNPACK_SKIP_ROWS, 0},
+    {GL_UNPACK_SKIP_IMAGES, 0},
+    {GL_PACK_ALIGNMENT, 1},
+    {GL_PACK_ROW_LENGTH, 0},
+    {GL_PACK_SKIP_PIXELS, 0},
+    {GL_PACK_SKIP_ROWS, 0},
+}};
+
+GLint integer(GLenum name) {
+    GLint value = 0;
+    GetIntegerv(name, &value);
+    return value;
+}
+
+GLuint asName(GLint value) {
+    return static_cast<GLuint>(value);
+}
+
+GLenum asEnum(GLint value) {
+    return static_cast<GLenum>(value);
+}
+
+void setSwitch(GLenum name, bool on) {
+    (on ? Enable : Disable)(name);
+}
+
+} // namespace
+
+StateGuard::StateGuard() {
+    saveBindings();
+    GetIntegerv(GL_VIEWPORT, viewport_.data());
+    GetIntegerv(GL_SCISSOR_BOX, scissor_.data());
+    GetFloatv(GL_COLOR_CLEAR_VALUE, clearColor_.data());
+    GetBooleanv(GL_COLOR_WRITEMASK, colorMask_.data());
+    GetBooleanv(GL_DEPTH_WRITEMASK, &depthMask_);
+    blend_ = {integer(GL_BLEND_SRC_RGB),      integer(GL_BLEND_SRC_ALPHA),
+              integer(GL_BLEND_DST_RGB),      integer(GL_BLEND_DST_ALPHA),
+              integer(GL_BLEND_EQUATION_RGB), integer(GL_BLEND_EQUATION_ALPHA)};
+    for (std::size_t i = 0; i < switches_.size(); ++i) {
+        switches_[i] = IsEnabled(kSwitchNames[i]) == GL_TRUE;
+    }
+    for (std::size_t i = 0; i < pixelStores_.size(); ++i) {
+        pixelStores_[i] = integer(kPixelStoreNames[i].name);
+    }
+}
+
+StateGuard::~StateGuard() {
+    restoreBindings();
+    Viewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
+    Scissor(scissor_[0], scissor_[1], scissor_[2], scissor_[3]);
+    ClearColor(clearColor_[0], clearColor_[1], clearColor_[2], clearColor_[3]);
+    ColorMask(colorMask_[0], colorMask_[1], colorMask_[2], colorMask_[3]);
+    DepthMask(depthMask_);
+    BlendFuncSeparate(asEnum(blend_.sourceRgb), asEnum(blend_.destinationRgb),
+                      asEnum(blend_.sourceAlpha), asEnum(blend_.destinationAlpha));
+    BlendEquationSeparate(asEnum(blend_.equationRgb), asEnum(blend_.equationAlpha));
+    for (std::size_t i = 0; i < switches_.size(); ++i) {
+        setSwitch(kSwitchNames[i], switches_[i]);
+    }
+    for (std::size_t i = 0; i < pixelStores_.size(); ++i) {
+        PixelStorei(kPixelStoreNames[i].name, pixelStores_[i]);
+    }
+}
+
+void StateGuard::usePlainPixelTransfer() {
+    BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    for (const PixelStore& store : kPixelStoreNames) {
+        PixelStorei(store.name, store.plain);
+    }
+}
+
+void StateGuard::saveBindings() {
+    program_ = integer(GL_CURRENT_PROGRAM);
+    vertexArray_ = integer(GL_VERTEX_ARRAY_BINDING);
+    drawFramebuffer_ = integer(GL_DRAW_FRAMEBUFFER_BINDING);
+    readFramebuffer_ = integer(GL_READ_FRAMEBUFFER_BINDING);
+    arrayBuffer_ = integer(GL_ARRAY_BUFFER_BINDING);
+    unpackBuffer_ = integer(GL_PIXEL_UNPACK_BUFFER_BINDING);
+    packBuffer_ = integer(GL_PIXEL_PACK_BUFFER_BINDING);
+    uniformBuffer_ = integer(GL_UNIFORM_BUFFER_BINDING);
+    for (GLuint i = 0; i < uniformBuffers_.size(); ++i) {
+        GetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, i, &uniformBuffers_[i].buffer);
+        GetInteger64i_v(GL_UNIFORM_BUFFER_START, i, &uniformBuffers_[i].offset);
+        GetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, i, &uniformBuffers_[i].size);
+    }
+    activeTexture_ = integer(GL_ACTIVE_TEXTURE);
+    for (GLuint i = 0; i < units_.size(); ++i) {
+        ActiveTexture(GL_TEXTURE0 + i);
+        units_[i] = {integer(GL_TEXTURE_BINDING_2D), integer(GL_TEXTURE_BINDING_2D_ARRAY),
+                     integer(GL_TEXTURE_BINDING_3D), integer(GL_SAMPLER_BINDING)};
+    }
+    ActiveTexture(asEnum(activeTexture_));
+}
+
+void StateGuard::restoreBindings() const {
+    UseProgram(asName(program_));
+    BindVertexArray(asName(vertexArray_));
+    BindFramebuffer(GL_DRAW_FRAMEBUFFER, asName(drawFramebuffer_));
+    BindFramebuffer(GL_READ_FRAMEBUFFER, asName(readFramebuffer_));
+    BindBuffer(GL_ARRAY_BUFFER, asName(arrayBuffer_));
+    BindBuffer(GL_PIXEL_UNPACK_BUFFER, asName(unpackBuffer_));
+    BindBuffer(GL_PIXEL_PACK_BUFFER, asName(packBuffer_));
+    restoreUniformBuffers();
+    for (GLuint i = 0; i < units_.size(); ++i) {
+        ActiveTexture(GL_TEXTURE0 + i);
+        BindTexture(GL_TEXTURE_2D, asName(units_[i].texture2d));
+        BindTexture(GL_TEXTURE_2D_ARRAY, asName(units_[i].texture2dArray));
+        BindTexture(GL_TEXTURE_3D, asName(units_[i].texture3d));
+        BindSampler(i, asName(units_[i].sampler));
+    }
+    ActiveTexture(asEnum(activeTexture_));
+}
+
+void StateGuard::restoreUniformBuffers() const {
+    for (GLuint i = 0; i < uniformBuffers_.size(); ++i) {
+        const BufferRange& range = uniformBuffers_[i];
+        if (range.size == 0) { // bound as a whole, or not bound
+            BindBufferBase(GL_UNIFORM_BUFFER, i, asName(range.buffer));
+        } else {
+            BindBufferRange(GL_UNIFORM_BUFFER, i, asName(range.buffer), range.offset, range.size);
+        }
+    }
+    BindBuffer(GL_UNIFORM_BUFFER, asName(uniformBuffer_)); // last: indexed binds move it too
+}
+
+} // namespace slabcast::gl

@@ -1,0 +1,260 @@
+#include "core/skip/proximity_cloud.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "core/skip/occupancy.h"
+
+namespace slabcast {
+
+namespace {
+
+// Lengths are whole 256ths of a quantum, each axis' step rounded down, and squares of them fill 32
+// bits. Integers keep the transform exact: in floating point a guard against over-estimates would
+// cost a whole quantum wherever a distance is a whole number of quanta, which with cubic voxels is
+// along every axis.
+constexpr std::int64_t kUnitsPerQuantum = 256;
+constexpr std::int64_t kFar = 254 * kUnitsPerQuantum; // from here on a byte holds 255
+constexpr auto kFarSquared = std::uint32_t(kFar * kFar);
+
+// Spacings and cosines come from text of about six digits: 0.6 / 0.2 is meant as 3, and a cosine of
+// 1e-6 as 0. Over 254 quanta this adds 0.003 of the smallest voxel edge, well inside the voxel by
+// which occupied blocks were grown.
+constexpr double kMeantAs = 1e-5;
+
+using AxisSteps = std::array<std::int64_t, 3>;
+
+AxisSteps blockSteps(const VolumeGeometry& geometry, int blockEdgeVoxels) {
+    AxisSteps steps{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const double quanta =
+            blockEdgeVoxels * geometry.spacingMm[axis] / geometry.smallestVoxelEdgeMm();
+        steps[axis] = std::int64_t(
+            std::min(double(kFar), std::floor(quanta * (1.0 + kMeantAs) * kUnitsPerQuantum)));
+    }
+    return steps;
+}
+
+/// Least length in patient space of a unit vector of voxel axes: 1 for orthogonal ones, less for
+/// sheared ones. It is the smallest singular value of the cosines, the root of 1 + lambda with
+/// lambda the smallest eigenvalue of their products less the identity: a matrix of zero diagonal,
+/// whose cubic lambda^3 = p lambda + q has a closed form.
+double shortestOfUnitVectors(const glm::dmat3& direction) {
+    const double xy = glm::dot(direction[0], direction[1]);
+    const double yz = glm::dot(direction[1], direction[2]);
+    const double zx = glm::dot(direction[2], direction[0]);
+    if (std::max({std::abs(xy), std::abs(yz), std::abs(zx)}) < kMeantAs) {
+        return 1.0;
+    }
+    const double radius = std::sqrt((xy * xy + yz * yz + zx * zx) / 3.0);
+    const double cosine = std::clamp(xy * yz * zx / (radius * radius * radius), -1.0, 1.0);
+    const double thirdTurn = 2.0943951023931953;
+    const double lambda = 2.0 * radius * std::cos(std::acos(cosine) / 3.0 + thirdTurn);
+    return std::sqrt(std::max(0.0, 1.0 + lambda - 1e-12)); // what cos and acos may be off by
+}
+
+std::int64_t floorDivide(std::int64_t dividend, std::int64_t divisor) {
+    return (dividend >= 0 ? dividend : dividend - divisor + 1) / divisor;
+}
+
+/// One line of the transform: replaces f by min over j of f(j) + (step * gap)^2, where gap is the
+/// number of whole blocks between i and j, max(0, |i - j| - 1). Growing f by one block turns gaps
+/// into distances; the minimum is then the lower envelope of one parabola per site, of which each
+/// is lowest on one stretch. Source: Felzenszwalb and Huttenlocher 2012, with the integer crossings
+/// of Meijster et al. 2000.
+class LineTransform {
+public:
+    LineTransform(int length, std::int64_t step)
+        : squaredStep_(step * step), grown_(length), pieces_(length) {}
+
+    void apply(std::uint32_t* line) {
+        grow(line);
+        layPieces();
+        readEnvelope(line);
+    }
+
+private:
+    struct Piece {
+        int site;
+        int begin; // first index at which this parabola is the lowest
+    };
+
+    void grow(const std::uint32_t* line) {
+        const int last = int(grown_.size()) - 1;
+        for (int i = 0; i <= last; ++i) {
+            grown_[i] = std::min({line[std::max(i - 1, 0)], line[i], line[std::min(i + 1, last)]});
+        }
+    }
+
+    /// Last index at which the parabola of `left` is not above that of `right`.
+    std::int64_t crossing(int left, int right) const {
+        const std::int64_t rise = std::int64_t(grown_[right]) - grown_[left];
+        return (floorDivide(rise, squaredStep_ * (right - left)) + left + right) >> 1;
+    }
+
+    void layPieces() {
+        count_ = 0;
+        const int length = int(grown_.size());
+        for (int site = 0; site < length; ++site) {
+            if (grown_[site] == kFarSquared) {
+                continue; // bounds nothing
+            }
+            std::int64_t begin = 0;
+            while (count_ > 0) {
+                begin = std::max<std::int64_t>(0, crossing(pieces_[count_ - 1].site, site) + 1);
+                if (begin > pieces_[count_ - 1].begin) {
+                    break;
+                }
+                --count_;
+            }
+            if (begin < length) {
+                pieces_[count_++] = {site, int(begin)};
+            }
+        }
+    }
+
+    void readEnvelope(std::uint32_t* line) const {
+        const int length = int(grown_.size());
+        if (count_ == 0) {
+            std::fill(line, line + length, kFarSquared);
+        }
+        for (int p = 0; p < count_; ++p) {
+            const auto [site, begin] = pieces_[p];
+            const int end = p + 1 < count_ ? pieces_[p + 1].begin : length;
+            for (int i = begin; i < end; ++i) {
+                const std::int64_t away = i - site;
+                line[i] = std::uint32_t(
+                    std::min<std::int64_t>(kFarSquared, grown_[site] + squaredStep_ * away * away));
+            }
+        }
+    }
+
+    std::int64_t squaredStep_;
+    std::vector<std::uint32_t> grown_;
+    std::vector<Piece> pieces_;
+    int count_ = 0;
+};
+
+/// The lines along one axis of a grid, cut into planes that threads may share: line l of plane p
+/// starts at p * planeStride + l * lineStride.
+struct AxisLines {
+    std::int64_t length, lines, planes;
+    std::int64_t stride, lineStride, planeStride;
+};
+
+AxisLines linesAlong(int axis, glm::ivec3 size) {
+    const std::array<std::int64_t, 3> strides{1, size.x, std::int64_t(size.x) * size.y};
+    const int line = axis == 0 ? 1 : 0;
+    const int plane = 3 - axis - line;
+    return {size[axis], size[line], size[plane], strides[axis], strides[line], strides[plane]};
+}
+
+/// Lines are gathered by the cache line before they are transformed: y and z would else fetch one
+/// for each entry.
+bool transformAxis(std::vector<std::uint32_t>& squared, const AxisLines& axis, std::int64_t step,
+                   const CancelToken* cancel) {
+    constexpr std::int64_t kBundle = 16;
+    const auto transformPlanes = [&](std::int64_t begin, std::int64_t end) {
+        LineTransform transform(int(axis.length), step);
+        std::vector<std::uint32_t> bundle(kBundle * axis.length);
+        const auto forBundles = [&](std::int64_t plane, auto&& visit) {
+            for (std::int64_t l = 0; l < axis.lines; l += kBundle) {
+                visit(squared.data() + plane * axis.planeStride + l * axis.lineStride,
+                      std::min(kBundle, axis.lines - l));
+            }
+        };
+        const auto forEntries = [&](std::uint32_t* corner, std::int64_t lines, auto&& visit) {
+            for (std::int64_t i = 0; i < axis.length; ++i) {
+                for (std::int64_t l = 0; l < lines; ++l) {
+                    visit(corner[i * axis.stride + l * axis.lineStride],
+                          bundle[l * axis.length + i]);
+                }
+            }
+        };
+        for (std::int64_t plane = begin; plane < end; ++plane) {
+            forBundles(plane, [&](std::uint32_t* corner, std::int64_t lines) {
+                forEntries(corner, lines, [](const auto& grid, auto& local) { local = grid; });
+                for (std::int64_t l = 0; l < lines; ++l) {
+                    transform.apply(bundle.data() + l * axis.length);
+                }
+                forEntries(corner, lines, [](auto& grid, const auto& local) { grid = local; });
+            });
+        }
+    };
+    return parallelFor(axis.planes, 1, transformPlanes, cancel);
+}
+
+/// Counts the occupied blocks and bounds them.
+void measure(const Occupancy& occupancy, ProximityCloud& cloud) {
+    const std::uint8_t* block = occupancy.occupied.data();
+    cloud.occupiedMin = occupancy.blocks;
+    for (int z = 0; z < occupancy.blocks.z; ++z) {
+        for (int y = 0; y < occupancy.blocks.y; ++y) {
+            for (int x = 0; x < occupancy.blocks.x; ++x) {
+                if (*block++ != 0) {
+                    ++cloud.occupiedBlocks;
+                    cloud.occupiedMin = glm::min(cloud.occupiedMin, glm::ivec3(x, y, z));
+                    cloud.occupiedMax = glm::max(cloud.occupiedMax, glm::ivec3(x, y, z));
+                }
+            }
+        }
+    }
+}
+
+/// Squared gaps to bytes: 0 where occupied, else one more than the whole quanta of the length.
+bool writeFreeLengths(const Occupancy& occupancy, const std::vector<std::uint32_t>& squared,
+                      double shortest, ProximityCloud& cloud, const CancelToken* cancel) {
+    const double quantaPerUnit = shortest / double(kUnitsPerQuantum);
+    return parallelFor(
+        std::int64_t(squared.size()), 65536,
+        [&](std::int64_t begin, std::int64_t end) {
+            for (std::int64_t i = begin; i < end; ++i) {
+                const int whole = int(std::sqrt(double(squared[i])) * quantaPerUnit);
+                cloud.freeLengths[i] = occupancy.occupied[i] != 0 ? 0 : std::uint8_t(1 + whole);
+            }
+        },
+        cancel);
+}
+
+} // namespace
+
+Result<ProximityCloud> buildProximityCloud(const CellVisibility& visibility,
+                                           const VolumeGeometry& geometry, int blockEdgeVoxels,
+                                           const CancelToken* cancel) {
+    constexpr std::array kEdges{1, 2, 4, 8};
+    if (std::find(kEdges.begin(), kEdges.end(), blockEdgeVoxels) == kEdges.end()) {
+        return fail(ErrorCode::InvalidArgument, "block edge " + std::to_string(blockEdgeVoxels) +
+                                                    ": not offered; use 1, 2, 4 or 8 voxels");
+    }
+    SLABCAST_EXPECTS(geometry.dims == visibility.texels->dims, geometry.dims.x);
+    const Result<Occupancy> occupancy = occupiedBlocks(visibility, blockEdgeVoxels, cancel);
+    if (!occupancy) {
+        return tl::unexpected(occupancy.error());
+    }
+    const std::vector<std::uint8_t>& occupied = occupancy->occupied;
+    ProximityCloud cloud{.blocks = occupancy->blocks,
+                         .blockEdgeVoxels = blockEdgeVoxels,
+                         .quantumMm = geometry.smallestVoxelEdgeMm(),
+                         .freeLengths = std::vector<std::uint8_t>(occupied.size(), 255)};
+    measure(*occupancy, cloud);
+    if (cloud.occupiedBlocks == 0) {
+        return cloud;
+    }
+    std::vector<std::uint32_t> squared(occupied.size());
+    std::transform(occupied.begin(), occupied.end(), squared.begin(),
+                   [](std::uint8_t mark) { return mark != 0 ? 0 : kFarSquared; });
+    const AxisSteps steps = blockSteps(geometry, blockEdgeVoxels);
+    const double shortest = shortestOfUnitVectors(geometry.direction);
+    bool complete = true;
+    for (int axis = 0; axis < 3 && complete; ++axis) {
+        complete = transformAxis(squared, linesAlong(axis, cloud.blocks), steps[axis], cancel);
+    }
+    if (!complete || !writeFreeLengths(*occupancy, squared, shortest, cloud, cancel)) {
+        return fail(ErrorCode::Internal, "skip structure: cancelled; build it again when needed");
+    }
+    return cloud;
+}
+
+} // namespace slabcast

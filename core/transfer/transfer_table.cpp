@@ -1,0 +1,128 @@
+#include "core/transfer/transfer_function.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/volume/half.h"
+
+namespace slabcast {
+namespace {
+
+/// Values of the table's first and last texel, and how many there are.
+struct Span {
+    double first;
+    double last;
+    int size;
+
+    double valueAt(int texel) const {
+        return texel == size - 1 ? last : first + texel * (last - first) / (size - 1);
+    }
+    double positionOf(double value) const { return (value - first) * (size - 1) / (last - first); }
+};
+
+/// Whether the TF jumps at its very first point: then what holds below it needs a texel of its own.
+bool startsWithStep(const TransferFunction& tf) {
+    return tf.points.size() > 1 && tf.points[0].value == tf.points[1].value;
+}
+
+/// Nothing where the TF is constant over the data.
+std::optional<Span> spanFor(const TransferFunction& tf, double dataMin, double dataMax,
+                            bool integerData, int maxSize) {
+    const double firstKnot = tf.points.front().value;
+    const double lastKnot = std::min(tf.points.back().value, dataMax);
+    const bool below = startsWithStep(tf) && firstKnot > dataMin;
+    const double first = std::max(firstKnot, dataMin);
+    if (first > lastKnot || (first == lastKnot && !below)) {
+        return std::nullopt;
+    }
+    if (integerData) {
+        const double low = below ? std::ceil(firstKnot) - 1.0 : std::floor(first);
+        const double high = std::ceil(lastKnot);
+        if (high - low < maxSize) {
+            return Span{low, high, static_cast<int>(high - low) + 1};
+        }
+    }
+    if (!below) {
+        return Span{first, lastKnot, maxSize};
+    }
+    const double texel = (lastKnot - first) / (maxSize - 2);
+    const double low = texel > 0.0 ? std::max(dataMin, first - texel) : dataMin;
+    return Span{low, lastKnot, maxSize};
+}
+
+/// A visible extinction stays visible and a large one finite.
+float halfExtinction(double extinction) {
+    if (extinction <= 0.0) {
+        return 0.0F;
+    }
+    const auto kept = static_cast<float>(std::min(extinction, double{kLargestHalf}));
+    return std::max(kSmallestHalf, roundedToHalf(kept));
+}
+
+glm::vec4 texelOf(const TransferSample& sample, double opacityUnitMm, CompositingSpace space) {
+    const glm::vec3 color(space == CompositingSpace::Linear ? linearFromSrgb(sample.color)
+                                                            : sample.color);
+    return {roundedToHalf(color.x), roundedToHalf(color.y), roundedToHalf(color.z),
+            halfExtinction(extinctionPerMm(sample.opacity, opacityUnitMm))};
+}
+
+/// Gives every peak that lies between two texels and above both to the nearer one. The first point
+/// of a step belongs to the interval on its left: at its own value the second one holds.
+void keepNarrowPeaks(const TransferFunction& tf, const Span& span,
+                     std::vector<TransferSample>& samples) {
+    const std::vector<TransferSample> plain = samples; // what the TF is at the texels
+    for (const TransferPoint& point : tf.points) {
+        const double position = span.positionOf(point.value);
+        if (position <= 0.0 || position > span.size - 1) {
+            continue;
+        }
+        const auto right = static_cast<std::size_t>(std::ceil(position));
+        if (point.opacity <= std::max(plain[right - 1].opacity, plain[right].opacity)) {
+            continue;
+        }
+        TransferSample& nearest = samples[static_cast<std::size_t>(std::lround(position))];
+        if (point.opacity > nearest.opacity) {
+            nearest = {point.color, point.opacity};
+        }
+    }
+}
+
+} // namespace
+
+TransferTable makeTable(const TransferFunction& tf, double dataMin, double dataMax,
+                        bool integerData, CompositingSpace space, int maxSize) {
+    SLABCAST_EXPECTS(!tf.points.empty(), tf.points.size());
+    SLABCAST_EXPECTS(dataMin <= dataMax, dataMax - dataMin);
+    SLABCAST_EXPECTS(maxSize >= 4, maxSize);
+    const auto toTexel = [&](const TransferSample& sample) {
+        return texelOf(sample, tf.opacityUnitMm, space);
+    };
+    const std::optional<Span> span = spanFor(tf, dataMin, dataMax, integerData, maxSize);
+    if (!span) {
+        const double width = std::max(1.0, std::abs(dataMin) * 1e-3); // any that is not zero
+        return {dataMin, dataMin + width, {2, toTexel(evaluate(tf, dataMin))}};
+    }
+    std::vector<TransferSample> samples;
+    for (int texel = 0; texel < span->size; ++texel) {
+        samples.push_back(evaluate(tf, span->valueAt(texel)));
+    }
+    keepNarrowPeaks(tf, *span, samples);
+    TransferTable table{span->first, span->last, {}};
+    std::transform(samples.begin(), samples.end(), std::back_inserter(table.texels), toTexel);
+    return table;
+}
+
+glm::dvec4 lookUp(const TransferTable& table, double value) {
+    SLABCAST_EXPECTS(table.texels.size() >= 2, table.texels.size());
+    const auto last = static_cast<double>(table.texels.size() - 1);
+    // Multiplied first: a value on a texel then finds it exactly, its neighbour not leaking in.
+    const double position = std::clamp(
+        (value - table.firstValue) * last / (table.lastValue - table.firstValue), 0.0, last);
+    const double below = std::min(std::floor(position), last - 1.0);
+    const auto index = static_cast<std::size_t>(below);
+    return glm::mix(glm::dvec4(table.texels[index]), glm::dvec4(table.texels[index + 1]),
+                    position - below);
+}
+
+} // namespace slabcast

@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/parallel.h"
+#include "core/volume/texel_codec.h"
+#include "core/volume/texels.h"
+
+namespace slabcast {
+namespace {
+
+constexpr std::int64_t kGrain = 1 << 18;
+constexpr std::size_t kCodes = 65536;
+
+// A coder gives a texel its code, and a code the sampled values that it stands for.
+
+template <class Codec>
+struct IntegerCoder {
+    explicit IntegerCoder(const Texels& /*texels*/) {}
+
+    static constexpr std::size_t kCount = Codec::kExactUnits < 256.0 ? 256 : kCodes;
+
+    std::uint16_t code(typename Codec::Texel texel) const {
+        return static_cast<std::uint16_t>(Codec::unpack(texel));
+    }
+    float low(std::size_t code) const {
+        return static_cast<float>(static_cast<double>(code) / Codec::kUnitsPerSampled);
+    }
+    float high(std::size_t code) const { return low(code); }
+};
+
+/// Bits of a half in the order of its values: negative ones count downwards, below all positive.
+struct HalfCoder {
+    explicit HalfCoder(const Texels& /*texels*/) {}
+
+    static constexpr std::size_t kCount = kCodes;
+
+    std::uint16_t code(std::uint16_t half) const {
+        return static_cast<std::uint16_t>((half & 0x8000U) != 0 ? ~half : half | 0x8000U);
+    }
+    /// Codes of infinities and NaN, which no texel has, repeat the format's ends.
+    float low(std::size_t code) const {
+        const auto bits =
+            static_cast<std::uint16_t>((code & 0x8000U) != 0 ? code & 0x7fffU : ~code);
+        if ((bits & 0x7c00U) == 0x7c00U) {
+            return std::copysign(kLargestHalf, (bits & 0x8000U) != 0 ? -1.0F : 1.0F);
+        }
+        return floatFromHalf(bits);
+    }
+    float high(std::size_t code) const { return low(code); }
+};
+
+/// 65,536 even bins from the smallest float to the largest.
+struct FloatCoder {
+    explicit FloatCoder(const Texels& texels) {
+        const float* begin = texelData(texels, FloatCodec{});
+        const auto [least, most] =
+            std::minmax_element(begin, begin + texels.data.size() / sizeof(float));
+        min = *least;
+        max = *most;
+        binWidth = (double{max} - double{min}) / double{kCodes};
+        // What the float64 arithmetic of `code` and of the bounds below may be off by.
+        slack = 0x1p-49 * std::max(std::abs(double{min}), std::abs(double{max}));
+    }
+
+    static constexpr std::size_t kCount = kCodes;
+
+    std::uint16_t code(float value) const {
+        const double bin = binWidth > 0.0 ? (double{value} - double{min}) / binWidth : 0.0;
+        return static_cast<std::uint16_t>(std::clamp(bin, 0.0, double{kCodes - 1}));
+    }
+    float low(std::size_t code) const {
+        const double edge = double{min} + static_cast<double>(code) * binWidth - slack;
+        return std::clamp(std::nextafter(static_cast<float>(edge), -kInfinity), min, max);
+    }
+    float high(std::size_t code) const {
+        const double edge = double{min} + static_cast<double>(code + 1) * binWidth + slack;
+        return std::clamp(std::nextafter(static_cast<float>(edge), kInfinity), min, max);
+    }
+
+    static constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    float min = 0.0F;
+    float max = 0.0F;
+    double binWidth = 0.0;
+    double slack = 0.0;
+};
+
+template <class Codec>
+IntegerCoder<Codec> coderFor(const Texels& texels, Codec /*codec*/) {
+    return IntegerCoder<Codec>(texels);
+}
+HalfCoder coderFor(const Texels& texels, HalfCodec /*codec*/) {
+    return HalfCoder(texels);
+}
+FloatCoder coderFor(const Texels& texels, FloatCodec /*codec*/) {
+    return FloatCoder(texels);
+}
+
+} // namespace
+
+TexelCodes encodeCodes(const Texels& texels) {
+    SLABCAST_EXPECTS(!texels.data.empty(), texels.data.size());
+    return visitTexelFormat(texels.format, [&](auto codec) {
+        const auto coder = coderFor(texels, codec);
+        const auto* data = texelData(texels, codec);
+        TexelCodes result;
+        result.dims = texels.dims;
+        result.codes.resize(texels.data.size() / bytesPerTexel(texels.format));
+        parallelFor(static_cast<std::int64_t>(result.codes.size()), kGrain,
+                    [&](std::int64_t begin, std::int64_t end) {
+                        std::transform(data + begin, data + end, result.codes.begin() + begin,
+                                       [&](auto texel) { return coder.code(texel); });
+                    });
+        for (std::size_t code = 0; code < coder.kCount; ++code) {
+            result.lowSampled.push_back(coder.low(code));
+            result.highSampled.push_back(coder.high(code));
+        }
+        return result;
+    });
+}
+
+} // namespace slabcast

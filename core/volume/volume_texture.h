@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "core/gl/caps.h"
+#include "core/gl/objects.h"
+#include "core/volume/texels.h"
+
+namespace slabcast {
+
+/// What showing a volume takes, before anything is allocated.
+struct MemoryForecast {
+    std::int64_t gpuTexelBytes = 0;
+    std::int64_t hostVoxelBytes = 0; // the volume as loaded
+    std::int64_t hostTexelBytes = 0; // the copy that is uploaded
+    std::int64_t hostCodeBytes = 0;  // codes that the skip structures are built from
+    std::int64_t hostBytes() const { return hostVoxelBytes + hostTexelBytes + hostCodeBytes; }
+};
+
+/// Fails: EmptyVolume, SizeOverflow. Tested by: texel_format_gl_test.cpp
+Result<MemoryForecast> forecastMemory(glm::ivec3 dims, VoxelType type, TexelFormat format);
+
+/// Fails: EmptyVolume, SizeOverflow.
+Result<std::int64_t> forecastTextureBytes(glm::ivec3 dims, TexelFormat format);
+
+/// Whether the texture stays within the device's 3D texture limit and the budget, if there is one.
+/// Fails: VolumeTooLarge, naming the limit and the smallest `--downsample N` that fits; EmptyVolume, SizeOverflow.
+Result<void> checkFits(glm::ivec3 dims, TexelFormat format, const gl::Caps& caps,
+                       std::optional<std::int64_t> gpuBudgetBytes = std::nullopt);
+
+/// The uploads below leave the GL state as they found it, go slab by slab, clamp to the edge and have one level.
+/// Fail: VolumeTooLarge, DeviceOutOfMemory, Internal (another GL error). Tested by: texel_format_gl_test.cpp
+
+/// Scalars: R8, R16 and R16F filtered; Rg8Exact (r high byte, g low byte) and R32fExact for texelFetch.
+Result<gl::Texture> uploadTexels(const Texels& texels, const gl::Caps& caps);
+
+/// Pre-classified texels, RGBA8, filtered. `texels` holds dims.x * dims.y * dims.z, x fastest.
+Result<gl::Texture> uploadClassified(const glm::u8vec4* texels, glm::ivec3 dims,
+                                     const gl::Caps& caps);
+
+/// Skip data: R8UI, for texelFetch on a usampler3D.
+Result<gl::Texture> uploadBytes3d(std::span<const std::uint8_t> bytes, glm::ivec3 dims,
+                                  const gl::Caps& caps);
+
+/// A transfer table: RGBA16F, width x 1, filtered. For a 2D sampler at v = 0.5.
+Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, const gl::Caps& caps);
+
+} // namespace slabcast

@@ -1,0 +1,15 @@
+// Counts: the work of the same walk instead of its colour, summed by additive blending into two float32 targets.
+layout(location = 0) out vec4 work0; // fragments, layers in the segment, layers evaluated, skip fetches
+layout(location = 1) out vec4 work1; // volume fetches
+int countedLayers = 0;
+int countedFetches = 0;
+int countedSkipFetches = 0;
+
+void countLayer() { ++countedLayers; }
+void countFetches(int n) { countedFetches += n; }
+void countSkipFetch() { ++countedSkipFetches; }
+
+void writeResult(vec4 sum, ivec2 range) {
+    work0 = vec4(1, range.y - range.x, countedLayers, countedSkipFetches);
+    work1 = vec4(countedFetches, 0, 0, sum.a);
+}

@@ -1,0 +1,80 @@
+// The ray of a fragment, in units of layers: at offset o it is at centre + o * step. Mirrors rayAt() in
+// core/frame/lattice.cpp.
+struct Ray {
+    vec3 centre;
+    vec3 step;
+    float layerLengthMm;
+    float entry; // offsets between which the ray is inside the box and beyond the near plane
+    float exit;
+};
+
+const float kFar = 1.0e30;
+
+/// Offsets at which one coordinate lies in [0, 1].
+vec2 slabOffsets(float centre, float slope) {
+    if (abs(slope) < 1.0e-25) {
+        return centre >= 0.0 && centre <= 1.0 ? vec2(-kFar, kFar) : vec2(kFar, -kFar);
+    }
+    float a = (0.0 - centre) / slope;
+    float b = (1.0 - centre) / slope;
+    return vec2(min(a, b), max(a, b));
+}
+
+Ray rayOfFragment(vec2 fragCoord) {
+    precise vec2 p = fragCoord - viewport.xy;
+    vec2 t = tangent.xy + tangent.zw * p;
+    float lengthPerDepth = sqrt(1.0 + dot(t, t));
+    vec3 direction = direction0.xyz + directionX.xyz * p.x + directionY.xyz * p.y;
+
+    Ray ray;
+    precise vec3 centre = centre0.xyz + centreX.xyz * p.x + centreY.xyz * p.y;
+    float nearOffset;
+    if (viewport.z == 0.0) {
+        ray.centre = centre;
+        ray.step = direction * direction0.w;
+        ray.layerLengthMm = direction0.w * lengthPerDepth * directionY.w;
+        nearOffset = centreX.w;
+    } else {
+        // From the sphere's depth to its distance. The quotient is the difference sphere.w - depth * length without
+        // its cancellation; behind the eye there is none, and the quotient's divisor may vanish.
+        vec2 miss = sphere.z * t - sphere.xy;
+        float far = dot(miss, sphere.z * t + sphere.xy) / (sphere.w + sphere.z * lengthPerDepth);
+        float toShell = sphere.z > 0.0 ? -far : sphere.w - sphere.z * lengthPerDepth;
+        vec3 perLength = direction / lengthPerDepth;
+        ray.centre = centre + perLength * toShell;
+        ray.step = perLength * direction0.w;
+        ray.layerLengthMm = direction0.w * directionY.w;
+        nearOffset = (centreY.w * lengthPerDepth - sphere.w) * directionX.w;
+    }
+    vec2 x = slabOffsets(ray.centre.x, ray.step.x);
+    vec2 y = slabOffsets(ray.centre.y, ray.step.y);
+    vec2 z = slabOffsets(ray.centre.z, ray.step.z);
+    ray.entry = max(max(x.x, y.x), max(z.x, nearOffset));
+    ray.exit = min(min(x.y, y.y), z.y);
+    return ray;
+}
+
+/// The layers of this plane that meet the ray's part inside: half-open.
+ivec2 layersOfPlane(Ray ray, int plane) {
+    int first = plane * layersPerPlane;
+    if (ray.entry >= ray.exit) {
+        return ivec2(first);
+    }
+    float low = float(first);
+    float high = float(first + layersPerPlane);
+    float begin = clamp(floor(ray.entry + centre0.w), low, high);
+    float end = clamp(ceil(ray.exit + centre0.w), low, min(high, 2.0 * centre0.w));
+    return ivec2(int(begin), int(end));
+}
+
+/// Sample of layer i: a pure function of ray and index, so that no way of walking moves it.
+vec3 samplePosition(Ray ray, int i) {
+    precise vec3 position = ray.centre + (float(i) - centre0.w + 0.5) * ray.step;
+    return position;
+}
+
+/// Length of layer i inside the box, mm.
+float lengthInside(Ray ray, int i) {
+    float low = float(i) - centre0.w;
+    return clamp(min(ray.exit, low + 1.0) - max(ray.entry, low), 0.0, 1.0) * ray.layerLengthMm;
+}

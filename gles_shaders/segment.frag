@@ -1,0 +1,21 @@
+// A fragment of a proxy plane: composites its segment of the ray, front to back. Planes are blended over each other.
+#include "frame.glsl"
+flat in int plane;
+
+#include "ray.glsl"
+#include "opacity.glsl"
+#include COUNT_FILE
+#include SKIP_FILE
+#include CLASSIFY_FILE
+#include TERMINATE_FILE
+#include MARCH_FILE
+
+void main() {
+    Ray ray = rayOfFragment(gl_FragCoord.xy);
+    ivec2 range = layersOfPlane(ray, plane);
+    ivec2 live = range;
+    if (range.x < range.y && segmentIsEmpty(ray, range)) {
+        live.y = live.x;
+    }
+    writeResult(march(ray, live), range);
+}

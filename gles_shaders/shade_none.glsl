@@ -1,0 +1,3 @@
+vec3 shade(vec3 colour, vec3 uvw, Ray ray) {
+    return colour;
+}

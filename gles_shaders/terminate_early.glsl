@@ -1,0 +1,3 @@
+bool terminated(float alpha) {
+    return alpha > viewport.w;
+}

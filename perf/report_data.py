@@ -1,0 +1,158 @@
+"""A sweep's measurements as the report needs them: read, checked, ordered."""
+
+import json
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+# What may tell two rows of one ratio apart, in the order in which labels name it.
+SERIES_KEYS = ("skip", "form", "tighten", "lattice", "classification", "termination")
+COUNTERS = {
+    "fragments": "fragments",
+    "layers_evaluated": "layers evaluated",
+    "layers_skipped": "layers skipped",
+    "volume_fetches": "volume fetches",
+    "skip_fetches": "skip fetches",
+}
+# Tukora 2020, section 3 and Fig. 4: frames per second (without skipping, with skipping) on the paper's phone.
+PAPER_FIGURES = {"ray casting": (4.7, 8.5), "hybrid": (None, 36.0), "slicing": (13.9, 13.9)}
+
+
+class BadInput(Exception):
+    """One line for a person: the cause, then the remedy."""
+
+
+def number(value):
+    """`value` as a finite float, or None: JSON of other makers holds nulls and strings."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return None
+    return float(value) if math.isfinite(value) else None
+
+
+@dataclass
+class Row:
+    raw: dict
+    planes: int
+    layers: int
+    median_ms: float
+    low_ms: float
+    high_ms: float
+
+    @property
+    def ratio(self):
+        return (self.planes, self.layers)
+
+    @property
+    def label(self):
+        return f"{self.planes}×{self.layers}"
+
+    @property
+    def fps(self):
+        return 1000.0 / self.median_ms
+
+    def counter(self, name):
+        return number((self.raw.get("counters") or {}).get(name))
+
+
+@dataclass
+class Series:
+    label: str
+    skips: bool
+    rows: list
+
+    @property
+    def slicing(self):
+        """The pure slicing row (one layer per plane), which ratios refer to; None where not measured."""
+        return next((row for row in self.rows if row.layers == 1), None)
+
+    @property
+    def best(self):
+        return min(self.rows, key=lambda row: row.median_ms)
+
+    def speed_up(self, row):
+        """How many times faster than slicing in this series; None where slicing was not measured."""
+        return self.slicing.median_ms / row.median_ms if self.slicing else None
+
+
+@dataclass
+class Sweep:
+    raw: dict
+    folder: Path
+    rows: list
+    series: list = field(default_factory=list)
+
+    @property
+    def ratios(self):
+        """Every (planes, layers) once, from ray casting to slicing."""
+        return sorted({row.ratio for row in self.rows}, key=lambda r: (r[0], -r[1]))
+
+    def section(self, name):
+        part = self.raw.get(name)
+        return part if isinstance(part, dict) else {}
+
+
+def _row(raw, where):
+    if not isinstance(raw, dict):
+        raise BadInput(f"{where} is no object; run the sweep again")
+    planes, layers = number(raw.get("planes")), number(raw.get("layersPerPlane"))
+    times = raw.get("frameMs") if isinstance(raw.get("frameMs"), dict) else {}
+    median = number(times.get("median"))
+    for name, value in (("planes", planes), ("layersPerPlane", layers), ("frameMs.median", median)):
+        if value is None or value <= 0:
+            raise BadInput(f"{where}.{name} is no positive number; run the sweep again")
+    low, high = number(times.get("min")), number(times.get("max"))
+    return Row(raw, int(planes), int(layers), median,
+               median if low is None else min(low, median),
+               median if high is None else max(high, median))
+
+
+def _splitting_keys(rows):
+    """The fewest keys that tell apart all rows of equal ratio: what varies only *with* the ratio splits nothing."""
+    chosen = ["skip"]
+    for key in SERIES_KEYS[1:]:
+        values = {}
+        for row in rows:
+            place = (row.ratio, *(str(row.raw.get(k)) for k in chosen))
+            values.setdefault(place, set()).add(str(row.raw.get(key)))
+        if any(len(seen) > 1 for seen in values.values()):
+            chosen.append(key)
+    return chosen
+
+
+def _describe(key, value):
+    if key == "skip":
+        return "no skipping" if value in (None, "none") else f"skipping ({value})"
+    if key == "tighten":
+        return "tight polygons" if value else "full polygons"
+    return str(value) if value is not None else f"{key} unknown"
+
+
+def _group(rows):
+    keys = _splitting_keys(rows)
+    groups = {}
+    for row in rows:
+        groups.setdefault(tuple(str(row.raw.get(key)) for key in keys), []).append(row)
+    series = []
+    for members in groups.values():
+        first = members[0].raw
+        label = ", ".join(_describe(key, first.get(key)) for key in keys)
+        members.sort(key=lambda row: (row.planes, -row.layers))
+        series.append(Series(label, first.get("skip") not in (None, "none"), members))
+    return sorted(series, key=lambda s: (s.skips, s.label))
+
+
+def load(folder):
+    """DIR/sweep.json. Raises BadInput."""
+    path = Path(folder) / "sweep.json"
+    try:
+        raw = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise BadInput(f"{path}: no such file; `slabcast sweep VOLUME --out {folder}` makes it") from None
+    except OSError as error:
+        raise BadInput(f"{path}: {error.strerror}; check the path and its permissions") from None
+    except ValueError as error:
+        raise BadInput(f"{path}: not JSON ({error}); run the sweep again") from None
+    if not isinstance(raw, dict) or not isinstance(raw.get("rows"), list) or not raw["rows"]:
+        raise BadInput(f"{path}: holds no rows; run the sweep again")
+    rows = [_row(row, f"{path}: rows[{i}]") for i, row in enumerate(raw["rows"])]
+    return Sweep(raw, Path(folder), rows, _group(rows))

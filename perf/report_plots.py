@@ -1,0 +1,194 @@
+"""The report's plots, as SVG text. Each is drawn wide for desks and narrow for phones."""
+
+import io
+import re
+
+import matplotlib
+import numpy as np
+
+matplotlib.use("svg")
+import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter  # noqa: E402
+
+from report_data import COUNTERS, PAPER_FIGURES, number  # noqa: E402
+
+INK, MUTED, RULE = "#22262b", "#6b7280", "#e3e5e8"
+PLAIN = ("#b5532a", "#d79a55", "#8a6d3b")
+SKIPPING = ("#1d6091", "#5aa0a8", "#6a5aa8")
+PAPER = "#8b8f96"
+
+plt.rcParams.update({
+    "font.family": "DejaVu Sans", "font.size": 9, "svg.fonttype": "path", "svg.hashsalt": "slabcast",
+    "axes.edgecolor": MUTED, "axes.labelcolor": INK, "axes.linewidth": 0.7, "text.color": INK,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True,
+    "axes.titlesize": 9, "axes.titlelocation": "left", "axes.titleweight": "bold",
+    "grid.color": RULE, "grid.linewidth": 0.7, "xtick.color": MUTED, "ytick.color": MUTED,
+    "xtick.labelcolor": INK, "ytick.labelcolor": INK, "legend.frameon": False,
+    "figure.constrained_layout.use": True,
+})
+
+
+def _svg(figure, name):
+    """Inline SVG that scales with the page; ids are made unique, for a page holds several."""
+    buffer = io.StringIO()
+    figure.savefig(buffer, format="svg", transparent=True, metadata={"Date": None})
+    plt.close(figure)
+    text = buffer.getvalue()
+    text = text[text.index("<svg"):]
+    text = re.sub(r'\b(id="|xlink:href="#|url\(#)', rf"\g<1>{name}-", text)
+    text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
+    return re.sub(r' width="[\d.]+pt"| height="[\d.]+pt"', "", text, count=2)
+
+
+def _plain_number(value, _=None):
+    return f"{value:g}" if value < 10000 else f"{value:,.0f}"
+
+
+def _colours(sweep):
+    counts = {True: 0, False: 0}
+    colours = []
+    for series in sweep.series:
+        palette = SKIPPING if series.skips else PLAIN
+        colours.append(palette[counts[series.skips] % len(palette)])
+        counts[series.skips] += 1
+    return colours
+
+
+def _ratio_axis(axes, sweep, room, label=True):
+    """`room`: how many labels fit side by side before they must lean."""
+    places = {ratio: i for i, ratio in enumerate(sweep.ratios)}
+    crowded = len(places) > room
+    axes.set_xticks(range(len(places)), [f"{p}×{n}" for p, n in sweep.ratios],
+                    rotation=60 if crowded else 0, ha="right" if crowded else "center",
+                    rotation_mode="anchor", fontsize=8)
+    axes.set_xlim(-0.5, len(places) - 0.5)
+    axes.grid(axis="x", visible=False)
+    if label:
+        axes.set_xlabel("ray casting  ←   planes × layers per plane   →  slicing", color=MUTED)
+    return places
+
+
+def _log_ms_axis(axes):
+    axes.set_yscale("log")
+    axes.yaxis.set_major_locator(LogLocator(10, subs=(1, 2, 5)))
+    axes.yaxis.set_major_formatter(FuncFormatter(_plain_number))
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    axes.tick_params(axis="y", which="minor", length=0)
+
+
+def frame_times(sweep, narrow):
+    """The core paper's Fig. 4 for this device: median, with whiskers from the fastest to the slowest frame."""
+    figure, axes = plt.subplots(figsize=(4.0, 3.9) if narrow else (8.6, 4.1))
+    places = _ratio_axis(axes, sweep, 5 if narrow else 14)
+    _log_ms_axis(axes)
+    middle = (len(sweep.series) - 1) / 2
+    for i, (series, colour) in enumerate(zip(sweep.series, _colours(sweep))):
+        x = [places[row.ratio] + 0.09 * (i - middle) for row in series.rows]
+        y = [row.median_ms for row in series.rows]
+        spans = ([row.median_ms - row.low_ms for row in series.rows],
+                 [row.high_ms - row.median_ms for row in series.rows])
+        axes.errorbar(x, y, spans, color=colour, lw=1.6, elinewidth=1.0, capsize=2.5, zorder=3,
+                      label=series.label)
+        for row, xi in zip(series.rows, x):
+            hollow = row.raw.get("form") == "loop"
+            axes.plot(xi, row.median_ms, "o", ms=5, mec=colour, mew=1.3, zorder=4,
+                      mfc="white" if hollow else colour)
+    axes.set_ylabel("frame time, ms (log)")
+    if any(row.raw.get("form") == "loop" for row in sweep.rows):
+        axes.plot([], [], "o", ms=5, mec=MUTED, mfc="white", label="hollow: loop, not unrolled")
+    fps = axes.secondary_yaxis("right", functions=(_reciprocal, _reciprocal))
+    fps.set_ylabel("frames per second")
+    fps.yaxis.set_major_locator(LogLocator(10, subs=(1, 2, 5)))
+    fps.yaxis.set_major_formatter(FuncFormatter(_plain_number))
+    fps.yaxis.set_minor_formatter(NullFormatter())
+    _legend_above(axes, narrow)
+    return _svg(figure, f"times{'-n' if narrow else ''}")
+
+
+def _reciprocal(value):
+    """Milliseconds to frames per second and back; the axis also asks for 0 while it is being laid out."""
+    return 1000.0 / np.maximum(value, 1e-9)
+
+
+def _legend_above(axes, narrow, y=1.0):
+    axes.legend(loc="lower left", bbox_to_anchor=(0, y), borderaxespad=0.2, fontsize=8,
+                ncol=1 if narrow else 4, handlelength=1.6, columnspacing=1.4)
+
+
+def speed_ups(sweep, narrow):
+    """Speed as a multiple of slicing: the one scale on which another device's figures may stand beside ours."""
+    if not any(series.slicing for series in sweep.series):
+        return None
+    figure, axes = plt.subplots(figsize=(4.0, 3.3) if narrow else (8.6, 3.3))
+    places = _ratio_axis(axes, sweep, 5 if narrow else 14)
+    for series, colour in zip(sweep.series, _colours(sweep)):
+        if series.slicing:
+            axes.plot([places[row.ratio] for row in series.rows],
+                      [series.speed_up(row) for row in series.rows],
+                      "o-", color=colour, lw=1.6, ms=4, label=series.label, zorder=3)
+    axes.axhline(1.0, color=MUTED, lw=0.9)
+    reached = PAPER_FIGURES["hybrid"][1] / PAPER_FIGURES["slicing"][1]
+    axes.axhline(reached, color=PAPER, lw=1.0, ls=(0, (4, 3)))
+    axes.annotate(f"paper's best hybrid, on its phone: {reached:.2f}×", (0.01, reached),
+                  xycoords=("axes fraction", "data"), xytext=(0, 3), textcoords="offset points",
+                  fontsize=7.5, color=MUTED)
+    axes.set_ylim(bottom=0, top=max(axes.get_ylim()[1], reached * 1.15))
+    axes.set_ylabel("speed, slicing = 1")
+    _legend_above(axes, narrow)
+    return _svg(figure, f"speed{'-n' if narrow else ''}")
+
+
+def counters(sweep, narrow):
+    """One small panel per counter, all over the same ratios, each from zero."""
+    names = [n for n in COUNTERS if any(row.counter(n) is not None for row in sweep.rows)]
+    if not names:
+        return None
+    columns = 1 if narrow else 2
+    lines = -(-len(names) // columns)
+    figure, grid = plt.subplots(lines, columns, figsize=(4.0, 2.0 * lines + 0.6) if narrow else
+                                (8.6, 2.0 * lines + 0.5), sharex=True, squeeze=False)
+    panels = list(grid.T.flat)
+    for axes in panels[len(names):]:
+        axes.set_visible(False)
+    for axes, name in zip(panels, names):
+        bottom = axes in grid[-1] or axes is panels[len(names) - 1]
+        places = _ratio_axis(axes, sweep, 6, label=False)
+        for series, colour in zip(sweep.series, _colours(sweep)):
+            points = [(places[r.ratio], r.counter(name)) for r in series.rows
+                      if r.counter(name) is not None]
+            axes.plot([x for x, _ in points], [y / 1e6 for _, y in points], "o-", color=colour,
+                      lw=1.4, ms=3, label=series.label, clip_on=False)
+        axes.set_title(f"{COUNTERS[name]}, millions per frame")
+        axes.set_ylim(bottom=0)
+        axes.yaxis.set_major_locator(MaxNLocator(4))
+        axes.tick_params(axis="x", labelbottom=bottom)
+    if narrow:
+        _legend_above(panels[0], narrow, y=1.16)
+    else:
+        figure.legend(*panels[0].get_legend_handles_labels(), loc="lower right", fontsize=8)
+    return _svg(figure, f"work{'-n' if narrow else ''}")
+
+
+def compile_times(sweep, narrow):
+    """Per variant the longest time measured: later uses find it compiled."""
+    longest = {}
+    for row in sweep.rows:
+        name, ms = row.raw.get("variant"), number(row.raw.get("compileMs"))
+        if name and ms is not None:
+            key = (row.layers, str(name), row.raw.get("skip") not in (None, "none"))
+            longest[key] = max(ms, longest.get(key, 0.0))
+    if not longest:
+        return None
+    ordered = sorted(longest.items(), key=lambda item: (item[0][2], item[0][0]))
+    figure, axes = plt.subplots(figsize=(4.0 if narrow else 8.6, 0.23 * len(ordered) + 0.7))
+    for place, ((_, _, skips), ms) in enumerate(ordered):
+        axes.barh(place, ms, height=0.68, color=SKIPPING[0] if skips else PLAIN[0])
+        axes.annotate(f" {ms:.0f}" if ms >= 10 else f" {ms:.1f}", (ms, place), va="center",
+                      fontsize=7.5, color=MUTED)
+    axes.set_yticks(range(len(ordered)), [name for (_, name, _), _ in ordered], fontsize=7.5)
+    axes.invert_yaxis()
+    axes.grid(axis="y", visible=False)
+    axes.tick_params(axis="y", length=0)
+    axes.margins(x=0.1, y=0.01)
+    axes.set_xlabel("compile and link, ms")
+    return _svg(figure, f"compile{'-n' if narrow else ''}")

@@ -1,0 +1,203 @@
+#include "platform/cli/draw.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "core/frame/ratio_tuner.h"
+#include "core/gl/api.h"
+
+namespace slabcast {
+
+namespace {
+
+/// Planes converge here, in bounding-sphere radii: at the volume's centre.
+double convergenceDepth(const SceneOptions& options, const BoundingSphere& sphere) {
+    return std::max(options.camera.distanceRadii, 0.1) * sphere.radiusMm;
+}
+
+/// Turned about the vertical axis through the volume's centre.
+glm::dmat4 turned(double degrees, const BoundingSphere& sphere) {
+    const glm::dmat4 there = glm::translate(glm::dmat4(1.0), sphere.centreMm);
+    const glm::dmat4 back = glm::translate(glm::dmat4(1.0), -sphere.centreMm);
+    return there * glm::rotate(glm::dmat4(1.0), glm::radians(degrees), glm::dvec3(0.0, 0.0, 1.0)) * back;
+}
+
+} // namespace
+
+Result<Stage> Stage::open(const SceneOptions& options) {
+    Result<Session> session = openSession();
+    if (!session) {
+        return tl::unexpected(session.error());
+    }
+    Result<LoadedScene> loaded = openScene(options.input, *session);
+    if (!loaded) {
+        return tl::unexpected(loaded.error());
+    }
+    Result<TransferFunction> tf = chooseTransferFunction(options.tf, loaded->scene, loaded->info.modality);
+    if (!tf) {
+        return tl::unexpected(tf.error());
+    }
+    const Settings& s = options.settings;
+    Look look{.tf = std::move(*tf), .space = s.space, .classification = s.classification};
+    if (s.shaded) {
+        look.shading = ShadingParameters{};
+    }
+    const BoundingSphere sphere = loaded->scene.geometry().boundingSphere();
+    // Towards the eye: a baked head light stands where the eye is at the first frame.
+    const glm::dmat3 rotation(viewFromModel(options.camera, sphere));
+    look.bakedLightDirection = glm::transpose(rotation) * glm::dvec3(0.0, 0.0, 1.0);
+    const bool needsCloud = s.tighten || s.skip.value_or(SkipStructure::Proximity) == SkipStructure::Proximity;
+    const SkipOptions skip{needsCloud ? SkipStructure::Proximity : SkipStructure::None, options.skipBlockEdge};
+    const int maxTable = static_cast<int>(std::min<std::int64_t>(4096, session->caps.maxTextureSize));
+    if (Result<void> set = loaded->scene.setLook(look, skip, maxTable); !set) {
+        return tl::unexpected(set.error());
+    }
+    Result<Renderer> renderer = Renderer::create(session->caps);
+    if (!renderer) {
+        return tl::unexpected(renderer.error());
+    }
+    return Stage(options, std::move(*session), std::move(*loaded), std::move(*renderer));
+}
+
+Result<FramePlan> Stage::decide(const Settings& settings) {
+    std::vector<RatioMeasurement> measurements;
+    if (!settings.planes && !settings.layersPerPlane && scene().facts().anythingVisible) {
+        Result<std::vector<RatioMeasurement>> measured =
+            measureRatios(renderer_, scene(), settings, session_.caps, views(0.0));
+        if (!measured) {
+            return tl::unexpected(measured.error());
+        }
+        measurements = std::move(*measured);
+    }
+    return plan(scene().facts(), settings, session_.caps, measurements);
+}
+
+Result<void> Stage::prepare(const FramePlan& plan) {
+    space_ = plan.space;
+    const GLenum format = plan.target == TargetFormat::Rgba8 ? GL_RGBA8 : GL_RGBA16F;
+    if (Result<void> made = target_.resize(options_.size.x, options_.size.y, {format}); !made) {
+        return made;
+    }
+    return renderer_.prepare(scene(), plan);
+}
+
+std::vector<ViewTarget> Stage::views(double turnDegrees) const {
+    const BoundingSphere sphere = scene().geometry().boundingSphere();
+    const int eyes = options_.stereoIpdMm ? 2 : 1;
+    const int width = options_.size.x / eyes;
+    const int height = options_.size.y;
+    View centre;
+    centre.viewFromModel = viewFromModel(options_.camera, sphere) * turned(turnDegrees, sphere);
+    centre.frustum = symmetricFrustum(options_.fovDegrees, static_cast<double>(width) / height);
+    const TargetEncoding encoding =
+        space_ == CompositingSpace::Display ? TargetEncoding::Encoded : TargetEncoding::Linear;
+    if (eyes == 1) {
+        return {{centre, target_.framebuffer(), {0, 0, width, height}, encoding}};
+    }
+    const auto pair = stereoViews(centre, *options_.stereoIpdMm, convergenceDepth(options_, sphere));
+    return {{pair[0], target_.framebuffer(), {0, 0, width, height}, encoding},
+            {pair[1], target_.framebuffer(), {width, 0, width, height}, encoding}};
+}
+
+Result<double> Stage::drawTimed(const FramePlan& plan, double turnDegrees) {
+    glm::vec4 clear(0.0F);
+    if (options_.background) {
+        const glm::dvec3 stored =
+            space_ == CompositingSpace::Display ? *options_.background : linearFromSrgb(*options_.background);
+        clear = glm::vec4(glm::dvec4(stored, 1.0));
+    }
+    target_.begin(clear);
+    gl::Finish();
+    const auto start = std::chrono::steady_clock::now();
+    Result<void> drawn = renderer_.draw(scene(), plan, views(turnDegrees));
+    if (!drawn) {
+        return tl::unexpected(drawn.error());
+    }
+    gl::Finish();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+Result<WorkCounters> Stage::countWork(const FramePlan& plan) { return renderer_.countWork(scene(), plan, views(0.0)); }
+
+std::vector<glm::vec4> Stage::picture(bool encoded) const {
+    std::vector<glm::vec4> pixels = target_.read();
+    const bool convert = encoded != (space_ == CompositingSpace::Display);
+    for (glm::vec4& pixel : pixels) {
+        const double alpha = static_cast<double>(pixel.a);
+        glm::dvec3 straight = alpha > 0.0 ? glm::dvec3(pixel) / alpha : glm::dvec3(0.0);
+        if (convert) {
+            straight = encoded ? srgbFromLinear(straight) : linearFromSrgb(straight);
+        }
+        pixel = glm::vec4(glm::dvec4(encoded ? straight : straight * alpha, alpha));
+    }
+    std::vector<glm::vec4> flipped;
+    flipped.reserve(pixels.size());
+    for (int y = target_.height() - 1; y >= 0; --y) {
+        const auto row = pixels.begin() + static_cast<std::ptrdiff_t>(y) * target_.width();
+        flipped.insert(flipped.end(), row, row + target_.width());
+    }
+    return flipped;
+}
+
+FrameTimes summarise(std::vector<double> ms) {
+    std::sort(ms.begin(), ms.end());
+    const auto at = [&ms](double quantile) {
+        return ms.empty() ? 0.0 : ms[static_cast<std::size_t>(quantile * static_cast<double>(ms.size() - 1) + 0.5)];
+    };
+    return {at(0.5), at(0.0), at(1.0), at(0.1), at(0.9), static_cast<int>(ms.size())};
+}
+
+nlohmann::json toJson(const gl::Caps& caps) {
+    return {{"vendor", caps.vendor},
+            {"renderer", caps.renderer},
+            {"version", caps.driver},
+            {"software", caps.isSoftware}};
+}
+
+nlohmann::json toJson(const VolumeInfo& info) {
+    return {{"name", info.name},
+            {"dims", {info.dims.x, info.dims.y, info.dims.z}},
+            {"type", info.type},
+            {"unit", info.unit},
+            {"spacingMm", {info.spacingMm.x, info.spacingMm.y, info.spacingMm.z}},
+            {"bytes", info.bytes}};
+}
+
+nlohmann::json toJson(const FramePlan& plan) {
+    nlohmann::json reasons = nlohmann::json::array();
+    for (const Reason& reason : plan.reasons) {
+        reasons.push_back({{"what", reason.what}, {"why", reason.why}});
+    }
+    return {{"planes", plan.planes},
+            {"layersPerPlane", plan.layersPerPlane},
+            {"layers", plan.lattice.total},
+            {"layerSpacingMm", plan.lattice.spacingMm},
+            {"lattice", name(plan.lattice.kind)},
+            {"variant", name(plan.variant)},
+            {"tighten", plan.tighten},
+            {"target", name(plan.target)},
+            {"space", name(plan.space)},
+            {"drawsNothing", plan.drawsNothing},
+            {"reasons", std::move(reasons)}};
+}
+
+nlohmann::json toJson(const FrameTimes& t) {
+    return {{"median", t.median}, {"min", t.min}, {"max", t.max}, {"p10", t.p10}, {"p90", t.p90}, {"n", t.count}};
+}
+
+nlohmann::json toJson(const Result<WorkCounters>& counters) {
+    if (!counters) {
+        return nullptr;
+    }
+    return {{"fragments", counters->fragments},
+            {"layers_evaluated", counters->layersEvaluated},
+            {"layers_skipped", counters->layersSkipped},
+            {"volume_fetches", counters->volumeFetches},
+            {"skip_fetches", counters->skipFetches}};
+}
+
+std::string commit() { return SLABCAST_COMMIT; }
+
+} // namespace slabcast

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/gl/color_targets.h"
+#include "platform/cli/options.h"
+
+namespace slabcast {
+
+/// A scene with its renderer and a framebuffer to draw into: what render and sweep share.
+class Stage {
+public:
+    /// Opens device and volume, applies the look.
+    static Result<Stage> open(const SceneOptions& options);
+
+    /// Decides the plan; measures ratios first where the settings leave the ratio open.
+    Result<FramePlan> decide(const Settings& settings);
+
+    /// prepare(), the framebuffer of the plan's format included.
+    Result<void> prepare(const FramePlan& plan);
+
+    /// Clears to the background and draws with the volume turned by `turnDegrees`; returns the time in ms until the
+    /// GPU has finished.
+    Result<double> drawTimed(const FramePlan& plan, double turnDegrees);
+
+    Result<WorkCounters> countWork(const FramePlan& plan);
+
+    /// The picture, top row first, over the background: sRGB-encoded if `encoded`, else light. Alpha 1 unless the
+    /// background is transparent, then not premultiplied if encoded.
+    std::vector<glm::vec4> picture(bool encoded) const;
+
+    const Scene& scene() const { return loaded_.scene; }
+    const VolumeInfo& info() const { return loaded_.info; }
+    const Session& session() const { return session_; }
+    Renderer& renderer() { return renderer_; }
+
+private:
+    Stage(SceneOptions options, Session session, LoadedScene loaded, Renderer renderer)
+        : options_(std::move(options)), session_(std::move(session)), loaded_(std::move(loaded)),
+          renderer_(std::move(renderer)) {}
+
+    std::vector<ViewTarget> views(double turnDegrees) const;
+
+    SceneOptions options_;
+    Session session_;
+    LoadedScene loaded_;
+    Renderer renderer_;
+    gl::ColorTargets target_;
+    CompositingSpace space_ = CompositingSpace::Display;
+};
+
+struct FrameTimes {
+    double median = 0.0, min = 0.0, max = 0.0, p10 = 0.0, p90 = 0.0;
+    int count = 0;
+};
+
+FrameTimes summarise(std::vector<double> milliseconds);
+
+// JSON fragments that reports share. Keys are stable: people plot them.
+nlohmann::json toJson(const gl::Caps& caps);
+nlohmann::json toJson(const VolumeInfo& info);
+nlohmann::json toJson(const FramePlan& plan);
+nlohmann::json toJson(const FrameTimes& times);
+nlohmann::json toJson(const Result<WorkCounters>& counters); // null where they cannot be had
+std::string commit();
+
+} // namespace slabcast

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "core/frame/frame_plan.h"
+#include "core/frame/renderer.h"
+#include "platform/cli/session.h"
+
+namespace slabcast {
+
+/// What render and sweep have in common: the scene, the camera and the settings of the plan.
+struct SceneOptions {
+    InputOptions input;
+    std::string tf;
+    glm::ivec2 size{1024, 1024};
+    OrbitCamera camera;
+    double fovDegrees = 40.0;
+    std::optional<double> stereoIpdMm;
+    Settings settings;
+    int skipBlockEdge = 4;
+    std::optional<glm::dvec3> background = glm::dvec3(0.0); // sRGB-encoded; none: transparent
+};
+
+struct RenderOptions : SceneOptions {
+    std::string output;
+    std::string statsFile;
+    int frames = 1;
+    bool explain = false;
+};
+
+struct SweepOptions : SceneOptions {
+    std::string outputFolder;
+    std::vector<int> layersPerPlane;
+    int frames = 12;
+};
+
+void bindInput(CLI::App& command, InputOptions& options);
+void bindScene(CLI::App& command, SceneOptions& options);
+
+} // namespace slabcast

@@ -1,0 +1,110 @@
+#include "platform/cli/session.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/core.h>
+
+#include "core/gl/api.h"
+#include "core/volume/downsample.h"
+#include "core/volume/phantoms.h"
+#include "platform/io/load_volume.h"
+#include "platform/io/transfer_json.h"
+
+namespace slabcast {
+
+Result<Session> openSession() {
+    Result<EglContext> context = EglContext::create();
+    if (!context) {
+        return tl::unexpected(context.error());
+    }
+    if (Result<void> loaded = gl::loadApi(context->getProc()); !loaded) {
+        return tl::unexpected(loaded.error());
+    }
+    const char* mask = std::getenv("SLABCAST_MASK_EXTENSIONS");
+    Result<gl::Caps> caps = gl::queryCaps(gl::parseExtensionMask(mask == nullptr ? "" : mask));
+    if (!caps) {
+        return tl::unexpected(caps.error());
+    }
+    std::vector<TexelFormatTest> formats = selfTestTexelFormats(*caps);
+    return Session{std::move(*context), std::move(*caps), std::move(formats)};
+}
+
+Result<Volume> openVolume(const InputOptions& options) {
+    Result<Volume> volume = tl::unexpected(Error{});
+    if (options.volume.rfind("phantom:", 0) == 0) {
+        volume = makePhantom(options.volume);
+    } else {
+        LoadOptions load{.series = options.series};
+        if (!options.raw.empty()) {
+            Result<RawLayout> layout = parseRawLayout(options.raw);
+            if (!layout) {
+                return tl::unexpected(layout.error());
+            }
+            load.raw = *layout;
+        }
+        volume = loadVolume(options.volume, load);
+    }
+    return volume && options.downsample > 1 ? downsample(*volume, glm::ivec3(options.downsample)) : volume;
+}
+
+Result<LoadedScene> openScene(const InputOptions& options, const Session& session) {
+    Result<Volume> volume = openVolume(options);
+    if (!volume) {
+        return tl::unexpected(volume.error());
+    }
+    VolumeInfo info{.name = volume->name,
+                    .type = name(volume->type),
+                    .unit = volume->unit,
+                    .dims = volume->geometry.dims,
+                    .spacingMm = volume->geometry.spacingMm,
+                    .bytes = static_cast<std::int64_t>(volume->voxels.size())};
+    if (volume->nonFiniteVoxels > 0) {
+        fmt::print(stderr, "slabcast: {}: {} voxels are NaN or infinite: treated as the lowest value\n", info.name,
+                   volume->nonFiniteVoxels);
+    }
+    const VolumeStatistics statistics = computeStatistics(*volume);
+    info.modality = likelyModality(*volume, statistics);
+    const TexelFormat format =
+        chooseTexelFormat(volume->type, statistics, options.exact, session.formats, &info.formatReason);
+    const std::optional<std::int64_t> budget =
+        options.gpuBudgetMib ? std::optional(static_cast<std::int64_t>(*options.gpuBudgetMib * 1048576.0))
+                             : std::nullopt;
+    if (Result<void> fits = checkFits(info.dims, format, session.caps, budget); !fits) {
+        return tl::unexpected(fits.error());
+    }
+    const Result<MemoryForecast> forecast = forecastMemory(info.dims, volume->type, format);
+    if (!forecast) {
+        return tl::unexpected(forecast.error());
+    }
+    info.forecast = *forecast;
+    const auto test = std::find_if(session.formats.begin(), session.formats.end(),
+                                   [=](const TexelFormatTest& t) { return t.format == format; });
+    const double filterError = test == session.formats.end() ? 0.0 : test->maxFilterErrorSampled;
+    return LoadedScene{Scene::create(std::move(*volume), format, filterError), std::move(info)};
+}
+
+Result<TransferFunction> chooseTransferFunction(const std::string& tf, const Scene& scene, Modality modality) {
+    if (tf.size() > 5 && tf.substr(tf.size() - 5) == ".json") {
+        return loadTransferFunction(tf);
+    }
+    return presetTransferFunction(tf.empty() ? defaultPresetName(modality, scene.statistics()) : tf,
+                                  scene.statistics());
+}
+
+std::int64_t peakHostBytes() {
+    std::ifstream status("/proc/self/status");
+    std::string key;
+    while (status >> key) {
+        if (key == "VmHWM:") {
+            std::int64_t kib = 0;
+            status >> kib;
+            return kib * 1024;
+        }
+        status.ignore(4096, '\n');
+    }
+    return 0;
+}
+
+} // namespace slabcast

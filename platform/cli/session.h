@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/frame/renderer.h"
+#include "core/frame/scene.h"
+#include "core/volume/texel_format.h"
+#include "platform/egl/egl_context.h"
+
+namespace slabcast {
+
+/// A headless context and what it can do.
+struct Session {
+    EglContext context;
+    gl::Caps caps;
+    std::vector<TexelFormatTest> formats;
+};
+
+/// Extensions named in SLABCAST_MASK_EXTENSIONS behave as absent.
+Result<Session> openSession();
+
+/// What is common to all commands that read a volume.
+struct InputOptions {
+    std::string volume; // a file, a folder, or phantom:NAME[:SIZE]
+    std::string series;
+    std::string raw;
+    int downsample = 1;
+    bool exact = false;
+    std::optional<double> gpuBudgetMib;
+};
+
+Result<Volume> openVolume(const InputOptions& options);
+
+/// What statistics say of the volume after its voxels are gone.
+struct VolumeInfo {
+    std::string name;
+    std::string type;
+    std::string unit;
+    glm::ivec3 dims{0};
+    glm::dvec3 spacingMm{0.0};
+    std::int64_t bytes = 0;
+    Modality modality = Modality::Unknown;
+    std::string formatReason;
+    MemoryForecast forecast;
+};
+
+struct LoadedScene {
+    Scene scene;
+    VolumeInfo info;
+};
+
+/// Chooses the texel format, checks that it fits before anything is allocated on the GPU, builds the scene.
+Result<LoadedScene> openScene(const InputOptions& options, const Session& session);
+
+/// `tf`: a preset's name, a JSON file, or empty for the default of the volume's modality and range.
+Result<TransferFunction> chooseTransferFunction(const std::string& tf, const Scene& scene, Modality modality);
+
+/// Host memory at its peak so far, bytes (VmHWM).
+std::int64_t peakHostBytes();
+
+} // namespace slabcast

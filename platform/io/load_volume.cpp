@@ -1,0 +1,113 @@
+#include "platform/io/load_volume.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "platform/io/parse_text.h"
+#include "platform/io/readers.h"
+
+namespace slabcast {
+
+namespace {
+
+struct Format {
+    std::string_view ending;
+    Result<Volume> (*read)(const std::filesystem::path& path);
+};
+
+constexpr std::array<Format, 11> kFormats = {{{".nrrd", readNrrd},
+                                              {".nhdr", readNrrd},
+                                              {".nii", readNifti},
+                                              {".nii.gz", readNifti},
+                                              {".mha", readMetaImage},
+                                              {".mhd", readMetaImage},
+                                              {".dcm", readDicomFile},
+                                              {".dicom", readDicomFile},
+                                              {".ima", readDicomFile},
+                                              {".tif", readImagePages},
+                                              {".tiff", readImagePages}}};
+
+Result<Volume> loadFolder(const std::filesystem::path& folder, const std::string& series) {
+    std::error_code error;
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        if (entry.is_regular_file(error) && !entry.path().filename().string().starts_with('.')) {
+            files.push_back(entry.path());
+        }
+    }
+    std::vector<std::filesystem::path> images;
+    std::copy_if(files.begin(), files.end(), std::back_inserter(images), isImage);
+    if (files.empty()) {
+        return fail(ErrorCode::EmptyFolder,
+                    fmt::format("{}: holds no files; name a folder with the slices of one volume",
+                                folder.string()));
+    }
+    const bool isStack = !images.empty() && !holdDicom(files); // DICOM may come without its mark
+    return isStack ? readImageStack(folder, images) : readDicomSeries(folder, series);
+}
+
+Result<Volume> loadFile(const std::filesystem::path& path) {
+    const std::string name = lowerCase(path.filename().string());
+    const auto format = std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& entry) {
+        return name.ends_with(entry.ending);
+    });
+    if (format != kFormats.end()) {
+        return format->read(path);
+    }
+    if (holdDicom({path})) {
+        return readDicomFile(path);
+    }
+    if (isImage(path)) {
+        return readImagePages(path);
+    }
+    return fail(
+        ErrorCode::UnsupportedType,
+        fmt::format("{}: is of no known format; read are .nrrd, .nhdr, .nii, .nii.gz, .mha, "
+                    ".mhd, .tif, folders of DICOM or images, and plain voxels with --raw",
+                    path.string()));
+}
+
+Result<void> checkOpens(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) {
+        return fail(ErrorCode::FileNotFound,
+                    fmt::format("{}: no such file or folder; check the path", path.string()));
+    }
+    const bool isFolder = std::filesystem::is_directory(path, error);
+    const bool opens = isFolder ? (std::filesystem::directory_iterator(path, error), !error)
+                                : std::ifstream(path, std::ios::binary).is_open();
+    if (!opens) {
+        return fail(ErrorCode::FileUnreadable,
+                    fmt::format("{}: cannot be opened; check its permissions", path.string()));
+    }
+    return {};
+}
+
+} // namespace
+
+Result<Volume> loadVolume(const std::filesystem::path& path, const LoadOptions& options) try {
+    if (const Result<void> opens = checkOpens(path); !opens) {
+        return tl::unexpected(opens.error());
+    }
+    const std::filesystem::path clean =
+        path.has_filename() ? path : path.parent_path(); // "folder/" has no name to give
+    Result<Volume> volume = options.raw ? readRaw(clean, *options.raw)
+                            : std::filesystem::is_directory(clean)
+                                ? loadFolder(clean, options.series)
+                                : loadFile(clean);
+    return std::move(volume).and_then(validated).map_error([&](Error error) {
+        const bool named = error.detail.find(clean.string()) != std::string::npos;
+        return named ? error
+                     : Error{error.code, fmt::format("{}: {}", path.string(), error.detail)};
+    });
+} catch (const std::exception& exception) { // out of memory; the readers catch their libraries'
+    return fail(ErrorCode::FileUnreadable,
+                fmt::format("{}: {}; close other programs or take a smaller volume", path.string(),
+                            exception.what()));
+}
+
+} // namespace slabcast

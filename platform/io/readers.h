@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/volume/volume.h"
+#include "platform/io/load_volume.h"
+
+namespace slabcast {
+
+// One reader per family of formats; loadVolume() chooses and validates. None of them throws.
+
+Result<Volume> readNrrd(const std::filesystem::path& path);
+Result<Volume> readNifti(const std::filesystem::path& path);
+Result<Volume> readMetaImage(const std::filesystem::path& path);
+
+Result<Volume> readDicomFile(const std::filesystem::path& path);
+/// `files`: those of the folder; an empty `series` asks for the only one.
+Result<Volume> readDicomSeries(const std::filesystem::path& folder, const std::string& series);
+/// Whether any of the files carries DICOM's mark behind its preamble.
+bool holdDicom(const std::vector<std::filesystem::path>& files);
+
+/// All pages of one file.
+Result<Volume> readImagePages(const std::filesystem::path& path);
+/// One slice per file, in natural order of the names; a single file gives its pages.
+Result<Volume> readImageStack(const std::filesystem::path& folder,
+                              std::vector<std::filesystem::path> files);
+/// By the end of the name.
+bool isImage(const std::filesystem::path& path);
+
+Result<Volume> readRaw(const std::filesystem::path& path, const RawLayout& layout);
+
+} // namespace slabcast

@@ -1,0 +1,49 @@
+#include "platform/io/save_image.h"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include "platform/io/atomic_file.h"
+
+namespace slabcast {
+
+namespace {
+
+/// `format` rather than the file's ending decides, so that any name may be given.
+Result<void> writeImage(const std::filesystem::path& path, const char* format,
+                        const OIIO::ImageSpec& spec, const void* pixels) {
+    if (spec.width < 1 || spec.height < 1) {
+        return fail(ErrorCode::InvalidArgument,
+                    fmt::format("{}: an image of {} x {} pixels; choose a size of at least 1 x 1",
+                                path.string(), spec.width, spec.height));
+    }
+    return writeFileAtomically(path, [&](const std::filesystem::path& temporary) -> Result<void> {
+        const auto file = OIIO::ImageOutput::create(format);
+        const bool written = file && file->open(temporary.string(), spec) &&
+                             file->write_image(spec.format, pixels) && file->close();
+        if (!written) {
+            return fail(ErrorCode::FileUnwritable,
+                        fmt::format("{}: {}; check the folder's permissions and the space left",
+                                    path.string(), file ? file->geterror() : OIIO::geterror()));
+        }
+        return {};
+    });
+}
+
+} // namespace
+
+Result<void> savePng(const std::filesystem::path& path, int width, int height,
+                     const std::uint8_t* pixels, PngChannels channels) {
+    OIIO::ImageSpec spec(width, height, static_cast<int>(channels), OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    spec.attribute("oiio:UnassociatedAlpha", 1); // else OpenImageIO divides colour by alpha
+    return writeImage(path, "png", spec, pixels);
+}
+
+Result<void> saveExr(const std::filesystem::path& path, int width, int height, const float* rgba) {
+    OIIO::ImageSpec spec(width, height, 4, OIIO::TypeDesc::FLOAT);
+    spec.attribute("compression", "zip");
+    return writeImage(path, "openexr", spec, rgba);
+}
+
+} // namespace slabcast

@@ -1,0 +1,73 @@
+#!/usr/bin/env bash
+# Installs the Debian or Ubuntu packages that a step needs, and only what is missing.
+# usage: platform/packages.sh GROUP...        groups: build test demo
+set -euo pipefail
+
+# group, package, why
+table="\
+build g++                    the compiler (C++20)
+build cmake                  configures the build
+build ninja-build            runs it
+build libglm-dev             vectors and matrices
+build libexpected-dev        results that may fail, without exceptions (tl::expected)
+build libgles-dev            OpenGL ES 3.2: headers
+build libegl-dev             contexts without a window: headers
+build libegl1                contexts without a window: loader
+build libegl-mesa0           Mesa's EGL
+build libgl1-mesa-dri        Mesa's drivers, llvmpipe among them: draws where there is no GPU
+build libcli11-dev           command line
+build nlohmann-json3-dev     JSON: transfer functions, statistics
+build libfmt-dev             text formatting
+build zlib1g-dev             reads the headers of compressed volumes
+build libinsighttoolkit5-dev reads volumes: DICOM, NIfTI, NRRD, MetaImage
+build libopenimageio-dev     writes PNG and EXR
+build python3-matplotlib     plots of the reports
+test  libgtest-dev           unit tests
+test  librapidcheck-dev      property tests
+test  glslang-tools          checks every shader variant against the specification
+demo  invesalius-examples    the skull: a CT as DICOM
+demo  mricron-data           a head: MR as NIfTI"
+
+isInstalled() { dpkg-query --show --showformat='${db:Status-Status}\n' "$1" 2>/dev/null | grep -qx installed; }
+
+asRoot() {
+    if [[ $(id -u) -eq 0 ]]; then
+        "$@"
+    elif command -v sudo >/dev/null; then
+        sudo "$@"
+    else
+        echo "packages: neither root nor sudo; install as root: ${missing[*]}" >&2
+        exit 1
+    fi
+}
+
+refuse() {
+    echo "packages: $1; groups: build test demo" >&2
+    exit 2
+}
+
+main() {
+    [[ $# -gt 0 ]] || refuse "no group named"
+    local wanted
+    for wanted in "$@"; do
+        grep -q "^$wanted " <<<"$table" || refuse "no group '$wanted'"
+    done
+    table=$(grep -E "^($(IFS='|' && echo "$*")) " <<<"$table")
+    if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+        echo "packages: neither Debian nor Ubuntu; these are needed, under your system's names:" >&2
+        echo "$table" >&2
+        return 0
+    fi
+
+    local missing=() package
+    while read -r _ package _; do
+        isInstalled "$package" || missing+=("$package")
+    done <<<"$table"
+    [[ ${#missing[@]} -gt 0 ]] || return 0
+    echo "packages: installing ${missing[*]}"
+    # A third party's list that cannot be fetched is no reason to stop: the lists at hand may do.
+    asRoot apt-get update -q || echo "packages: going on with the package lists at hand" >&2
+    asRoot env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
+}
+
+main "$@"

@@ -1,0 +1,186 @@
+#include "core/skip/cell_visibility.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "tests/support/skip_scene.h"
+
+namespace slabcast {
+namespace {
+
+using test::bandTable;
+using test::constantScene;
+using test::SkipScene;
+
+/// The rule as the words have it: some texel with alpha between the cell's ends, one texel of grace
+/// on each side. `slack` moves the ends apart, in texels.
+bool visibleByTheWords(const SkipScene& scene, int minCode, int maxCode, double error,
+                       double slack) {
+    const TransferTable& table = scene.table;
+    const double last = double(table.texels.size()) - 1.0;
+    const auto texelOf = [&](double sampled) {
+        const double value = scene.texels.valueScale * sampled + scene.texels.valueBias;
+        const double x = (value - table.firstValue) / (table.lastValue - table.firstValue) * last;
+        return std::clamp(x, 0.0, last);
+    };
+    const double one = texelOf(scene.codes.lowSampled[minCode] - error);
+    const double other = texelOf(scene.codes.highSampled[maxCode] + error);
+    const double from = std::floor(std::min(one, other) - slack) - 1.0;
+    const double to = std::ceil(std::max(one, other) + slack) + 1.0;
+    for (int k = 0; k < int(table.texels.size()); ++k) {
+        if (table.texels[k].a > 0.0F && k >= from && k <= to) {
+            return true;
+        }
+    }
+    return false;
+}
+
+SkipScene randomTableScene() {
+    SkipScene scene = constantScene(glm::ivec3(1), 0, {});
+    const int size = *rc::gen::inRange(2, 40);
+    scene.table = bandTable(size, 0, -1);
+    for (const int k : *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, size))) {
+        scene.table.texels[k].a = 0.25F;
+    }
+    scene.table.firstValue = *rc::gen::inRange(-400, 400) / 8.0;
+    scene.table.lastValue = scene.table.firstValue + *rc::gen::inRange(1, 2000) / 8.0;
+    scene.texels.valueScale = *rc::gen::element(1.0, 0.5, 2.0, -1.0, -0.25);
+    scene.texels.valueBias = *rc::gen::inRange(-400, 400) / 8.0;
+    return scene;
+}
+
+RC_GTEST_PROP(CellVisibility, SaysWhatTheWordsSay, ()) {
+    const SkipScene scene = randomTableScene();
+    const double error = *rc::gen::element(0.0, 0.5, 3.0);
+    const CellVisibility visibility = scene.visibility(error);
+    for (int a = 0; a < 256; a += 3) {
+        for (int b = a; b < 256; b += 5) {
+            // Where an end falls on a texel, rounding may take either side.
+            const bool visible = visibility.visible(std::uint16_t(a), std::uint16_t(b));
+            RC_ASSERT(visible || !visibleByTheWords(scene, a, b, error, -1e-9));
+            RC_ASSERT(!visible || visibleByTheWords(scene, a, b, error, 1e-9));
+        }
+    }
+}
+
+RC_GTEST_PROP(CellVisibility, MissesNoValueThatACellCanTake, ()) {
+    const SkipScene scene = randomTableScene();
+    const CellVisibility visibility = scene.visibility();
+    const int a = *rc::gen::inRange(0, 256);
+    const int b = *rc::gen::inRange(a, 256);
+    for (int step = 0; step <= 1000; ++step) {
+        const double sampled = a + (b - a) * step / 1000.0;
+        const double value = scene.texels.valueScale * sampled + scene.texels.valueBias;
+        if (lookUp(scene.table, value).a > 0.0) {
+            RC_ASSERT(visibility.visible(std::uint16_t(a), std::uint16_t(b)));
+        }
+    }
+}
+
+TEST(CellVisibility, FindsTheBandBetweenTwoVoxelsThatTheVoxelRuleMisses) {
+    SkipScene scene = constantScene({6, 1, 1}, 0, bandTable(256, 140, 160));
+    for (int x = 0; x < 6; ++x) {
+        scene.code({x, 0, 0}) = std::uint16_t(50 * x);
+    }
+    scene.code({3, 0, 0}) = 200; // 0 50 100 | 200 200 250: the band lies in one step
+    for (int x = 0; x < 6; ++x) {
+        ASSERT_EQ(lookUp(scene.table, scene.code({x, 0, 0})).a, 0.0) << "voxel " << x;
+    }
+    ASSERT_GT(lookUp(scene.table, test::fieldAt(scene, {3.0, 0.5, 0.5})).a, 0.0);
+    const CellVisibility visibility = scene.visibility();
+    for (int x = 0; x < 5; ++x) {
+        EXPECT_EQ(visibility.visible(scene.code({x, 0, 0}), scene.code({x + 1, 0, 0})), x == 2);
+    }
+}
+
+TEST(CellVisibility, WidensByOneTexelAndTheFilterError) {
+    const SkipScene scene = constantScene({1, 1, 1}, 0, bandTable(256, 100, 100));
+    const CellVisibility exact = scene.visibility();
+    EXPECT_FALSE(exact.visible(90, 98));
+    EXPECT_TRUE(exact.visible(90, 99));
+    EXPECT_TRUE(exact.visible(101, 110));
+    EXPECT_FALSE(exact.visible(102, 110));
+    const CellVisibility coarse = scene.visibility(2.0);
+    EXPECT_FALSE(coarse.visible(90, 96));
+    EXPECT_TRUE(coarse.visible(90, 97));
+    EXPECT_TRUE(coarse.visible(103, 110));
+    EXPECT_FALSE(coarse.visible(104, 110));
+}
+
+TEST(CellVisibility, TakesTheWholeBinOfACode) {
+    SkipScene scene = constantScene({1, 1, 1}, 0, bandTable(256, 100, 100));
+    scene.codes.lowSampled[7] = 10.0F;
+    scene.codes.highSampled[7] = 99.5F;
+    EXPECT_TRUE(scene.visibility().visible(7, 7));
+    scene.codes.highSampled[7] = 97.5F;
+    EXPECT_FALSE(scene.visibility().visible(7, 7));
+    scene.codes.highSampled[7] = std::numeric_limits<float>::infinity();
+    EXPECT_TRUE(scene.visibility().visible(7, 7));
+}
+
+TEST(CellVisibility, DegenerateTablesAreVisibleWhereAnyTexelIs) {
+    SkipScene scene = constantScene({1, 1, 1}, 9, bandTable(1, 0, 0));
+    EXPECT_TRUE(scene.visibility().visible(0, 0));
+    scene.table = bandTable(1, 0, -1);
+    EXPECT_FALSE(scene.visibility().visible(0, 255));
+    scene.table = bandTable(3, 2, 2);
+    scene.table.lastValue = scene.table.firstValue;
+    EXPECT_TRUE(scene.visibility().visible(0, 0));
+    scene.table = bandTable(3, 0, -1);
+    scene.table.lastValue = scene.table.firstValue;
+    EXPECT_FALSE(scene.visibility().visible(0, 255));
+}
+
+TEST(CellVisibility, OfAlphaIsAnyCornerWithAlpha) {
+    const SkipScene scene = constantScene({1, 1, 1}, 0, bandTable(1, 0, 0));
+    const CellVisibility visibility = cellVisibilityOfAlpha(scene.codes);
+    for (int a = 0; a < 256; ++a) {
+        for (int b = a; b < 256; ++b) {
+            ASSERT_EQ(visibility.visible(std::uint16_t(a), std::uint16_t(b)), a > 0 || b > 0);
+        }
+    }
+}
+
+RC_GTEST_PROP(CellVisibility, AnyIsTrueExactlyWhereSomeCellIs, ()) {
+    SkipScene scene = randomTableScene();
+    const glm::ivec3 dims(*rc::gen::inRange(1, 5), *rc::gen::inRange(1, 5),
+                          *rc::gen::inRange(1, 5));
+    const TransferTable table = scene.table;
+    const Texels texels = scene.texels;
+    scene = constantScene(dims, 0, table);
+    scene.texels.valueScale = texels.valueScale;
+    scene.texels.valueBias = texels.valueBias;
+    for (std::uint16_t& code : scene.codes.codes) {
+        code = std::uint16_t(*rc::gen::inRange(0, 256));
+    }
+    const CellVisibility visibility = scene.visibility();
+    bool any = false;
+    for (int z = 0; z < dims.z; ++z) {
+        for (int y = 0; y < dims.y; ++y) {
+            for (int x = 0; x < dims.x; ++x) {
+                std::uint16_t low = 65535;
+                std::uint16_t high = 0;
+                for (int corner = 0; corner < 8; ++corner) {
+                    const glm::ivec3 offset(corner & 1, (corner >> 1) & 1, corner >> 2);
+                    const auto code = scene.code(glm::min(glm::ivec3(x, y, z) + offset, dims - 1));
+                    low = std::min(low, code);
+                    high = std::max(high, code);
+                }
+                any = any || visibility.visible(low, high);
+            }
+        }
+    }
+    RC_ASSERT(visibility.anyVisible() == any);
+}
+
+TEST(CellVisibility, BreachedContractsAbort) {
+    SkipScene scene = constantScene({1, 1, 1}, 0, {});
+    EXPECT_DEATH(scene.visibility(), "cellVisibility: expects");
+    scene.table = bandTable(2, 0, 1);
+    EXPECT_DEATH(scene.visibility(-1.0), "filterErrorSampled");
+}
+
+} // namespace
+} // namespace slabcast

@@ -1,0 +1,221 @@
+#include "core/gl/state_guard.h"
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/gl/objects.h"
+#include "core/gl/program.h"
+#include "tests/support/gl_fixture.h"
+
+namespace slabcast {
+
+namespace {
+
+constexpr const char* kVertexText = R"(#version 320 es
+void main() {
+    gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0);
+}
+)";
+constexpr const char* kFragmentText = R"(#version 320 es
+precision highp float;
+uniform vec4 tint;
+out vec4 colour;
+void main() { colour = tint; }
+)";
+
+/// The documented state, read one by one: name of the state -> its value.
+using Snapshot = std::map<std::string, std::vector<double>>;
+
+struct Tracked {
+    const char* name;
+    GLenum query;
+    int count;
+};
+
+constexpr Tracked kTracked[] = {
+    {"program", GL_CURRENT_PROGRAM, 1},
+    {"vertex array", GL_VERTEX_ARRAY_BINDING, 1},
+    {"draw framebuffer", GL_DRAW_FRAMEBUFFER_BINDING, 1},
+    {"read framebuffer", GL_READ_FRAMEBUFFER_BINDING, 1},
+    {"viewport", GL_VIEWPORT, 4},
+    {"scissor box", GL_SCISSOR_BOX, 4},
+    {"colour mask", GL_COLOR_WRITEMASK, 4},
+    {"clear colour", GL_COLOR_CLEAR_VALUE, 4},
+    {"depth mask", GL_DEPTH_WRITEMASK, 1},
+    {"blend source rgb", GL_BLEND_SRC_RGB, 1},
+    {"blend source alpha", GL_BLEND_SRC_ALPHA, 1},
+    {"blend destination rgb", GL_BLEND_DST_RGB, 1},
+    {"blend destination alpha", GL_BLEND_DST_ALPHA, 1},
+    {"blend equation rgb", GL_BLEND_EQUATION_RGB, 1},
+    {"blend equation alpha", GL_BLEND_EQUATION_ALPHA, 1},
+    {"blend", GL_BLEND, 1},
+    {"cull face", GL_CULL_FACE, 1},
+    {"depth test", GL_DEPTH_TEST, 1},
+    {"dither", GL_DITHER, 1},
+    {"rasterizer discard", GL_RASTERIZER_DISCARD, 1},
+    {"scissor test", GL_SCISSOR_TEST, 1},
+    {"stencil test", GL_STENCIL_TEST, 1},
+    {"array buffer", GL_ARRAY_BUFFER_BINDING, 1},
+    {"unpack buffer", GL_PIXEL_UNPACK_BUFFER_BINDING, 1},
+    {"pack buffer", GL_PIXEL_PACK_BUFFER_BINDING, 1},
+    {"uniform buffer", GL_UNIFORM_BUFFER_BINDING, 1},
+    {"unpack alignment", GL_UNPACK_ALIGNMENT, 1},
+    {"unpack row length", GL_UNPACK_ROW_LENGTH, 1},
+    {"unpack image height", GL_UNPACK_IMAGE_HEIGHT, 1},
+    {"unpack skip pixels", GL_UNPACK_SKIP_PIXELS, 1},
+    {"unpack skip rows", GL_UNPACK_SKIP_ROWS, 1},
+    {"unpack skip images", GL_UNPACK_SKIP_IMAGES, 1},
+    {"pack alignment", GL_PACK_ALIGNMENT, 1},
+    {"pack row length", GL_PACK_ROW_LENGTH, 1},
+    {"pack skip pixels", GL_PACK_SKIP_PIXELS, 1},
+    {"pack skip rows", GL_PACK_SKIP_ROWS, 1},
+    {"active texture", GL_ACTIVE_TEXTURE, 1},
+};
+
+Snapshot snapshot() {
+    Snapshot state;
+    for (const Tracked& row : kTracked) {
+        std::array<GLfloat, 4> values{};
+        gl::GetFloatv(row.query, values.data());
+        state[row.name] = {values.begin(), values.begin() + row.count};
+    }
+    for (GLuint i = 0; i < 2; ++i) {
+        GLint64 buffer = 0;
+        GLint64 start = 0;
+        GLint64 size = 0;
+        gl::GetInteger64i_v(GL_UNIFORM_BUFFER_BINDING, i, &buffer);
+        gl::GetInteger64i_v(GL_UNIFORM_BUFFER_START, i, &start);
+        gl::GetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, i, &size);
+        state["uniform buffer " + std::to_string(i)] = {double(buffer), double(start),
+                                                        double(size)};
+    }
+    GLint active = 0;
+    gl::GetIntegerv(GL_ACTIVE_TEXTURE, &active);
+    for (GLuint unit = 0; unit < 8; ++unit) {
+        gl::ActiveTexture(GL_TEXTURE0 + unit);
+        for (const GLenum binding : {GL_TEXTURE_BINDING_2D, GL_TEXTURE_BINDING_2D_ARRAY,
+                                     GL_TEXTURE_BINDING_3D, GL_SAMPLER_BINDING}) {
+            GLint id = 0;
+            gl::GetIntegerv(binding, &id);
+            state["unit " + std::to_string(unit) + " binding " + std::to_string(binding)] = {
+                static_cast<double>(id)};
+        }
+    }
+    gl::ActiveTexture(static_cast<GLenum>(active));
+    return state;
+}
+
+/// Objects and numbers of one owner of the context; `k` tells owners apart.
+struct Owner {
+    explicit Owner(int number) : k(number) {
+        gl::BindBuffer(GL_UNIFORM_BUFFER, buffer.id());
+        gl::BufferData(GL_UNIFORM_BUFFER, 4096, nullptr, GL_STATIC_DRAW);
+    }
+
+    int k;
+    gl::Buffer buffer = gl::Buffer::make("owner");
+    gl::Texture plane = gl::Texture::make("owner", GL_TEXTURE_2D);
+    gl::Texture layers = gl::Texture::make("owner", GL_TEXTURE_2D_ARRAY);
+    gl::Texture volume = gl::Texture::make("owner", GL_TEXTURE_3D);
+    gl::Sampler sampler = gl::Sampler::make("owner");
+    gl::Framebuffer draw = gl::Framebuffer::make("owner");
+    gl::Framebuffer read = gl::Framebuffer::make("owner");
+    gl::VertexArray array = gl::VertexArray::make("owner");
+    gl::Program program = *gl::buildProgram("owner", kVertexText, kFragmentText);
+
+    void bindAll() const {
+        program.use();
+        gl::BindVertexArray(array.id());
+        gl::BindFramebuffer(GL_DRAW_FRAMEBUFFER, draw.id());
+        gl::BindFramebuffer(GL_READ_FRAMEBUFFER, read.id());
+        for (GLuint unit = 0; unit < 8; ++unit) {
+            gl::ActiveTexture(GL_TEXTURE0 + unit);
+            gl::BindTexture(GL_TEXTURE_2D, plane.id());
+            gl::BindTexture(GL_TEXTURE_2D_ARRAY, layers.id());
+            gl::BindTexture(GL_TEXTURE_3D, volume.id());
+            gl::BindSampler(unit, sampler.id());
+        }
+        gl::ActiveTexture(GL_TEXTURE3 + static_cast<GLenum>(k));
+        for (const GLenum target :
+             {GL_ARRAY_BUFFER, GL_PIXEL_UNPACK_BUFFER, GL_PIXEL_PACK_BUFFER}) {
+            gl::BindBuffer(target, buffer.id());
+        }
+        gl::BindBufferRange(GL_UNIFORM_BUFFER, 0, buffer.id(), 256 * k, 512);
+        gl::BindBufferBase(GL_UNIFORM_BUFFER, 1, buffer.id());
+        gl::BindBuffer(GL_UNIFORM_BUFFER,
+                       k == 1 ? 0 : buffer.id()); // not what the last index holds
+    }
+
+    void setAll() const {
+        const auto on = static_cast<GLboolean>(k == 1);
+        const auto shade = static_cast<GLfloat>(k) / 8.0F;
+        gl::Viewport(k, k + 1, k + 2, k + 3);
+        gl::Scissor(k + 4, k + 5, k + 6, k + 7);
+        gl::ColorMask(on, !on, on, !on);
+        gl::ClearColor(shade, shade, shade, shade);
+        gl::DepthMask(on);
+        gl::BlendFuncSeparate(GL_SRC_COLOR + k, GL_DST_ALPHA + k, GL_ONE_MINUS_SRC_COLOR + k,
+                              GL_SRC_ALPHA + k);
+        gl::BlendEquationSeparate(k == 1 ? GL_FUNC_SUBTRACT : GL_MAX,
+                                  k == 1 ? GL_MIN : GL_FUNC_ADD);
+        for (const GLenum name : {GL_BLEND, GL_CULL_FACE, GL_DEPTH_TEST, GL_DITHER,
+                                  GL_RASTERIZER_DISCARD, GL_SCISSOR_TEST, GL_STENCIL_TEST}) {
+            (on ? gl::Enable : gl::Disable)(name);
+        }
+        for (const GLenum name : {GL_UNPACK_ALIGNMENT, GL_PACK_ALIGNMENT}) {
+            gl::PixelStorei(name, k * 2);
+        }
+        for (const GLenum name : {GL_UNPACK_ROW_LENGTH, GL_UNPACK_IMAGE_HEIGHT,
+                                  GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_IMAGES,
+                                  GL_PACK_ROW_LENGTH, GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS}) {
+            gl::PixelStorei(name, k * 3);
+        }
+    }
+};
+
+} // namespace
+
+class StateGuardGl : public GlTest {};
+
+TEST_F(StateGuardGl, RestoresAllThatItDocuments) {
+    const gl::StateGuard forOtherTests;
+    const Owner host(1);
+    const Owner renderer(2);
+    host.bindAll();
+    host.setAll();
+    const Snapshot before = snapshot();
+    {
+        const gl::StateGuard guard;
+        renderer.bindAll();
+        renderer.setAll();
+        const Snapshot inside = snapshot();
+        for (const auto& [name, value] : before) { // else the comparison below could not fail
+            EXPECT_NE(inside.at(name), value) << name;
+        }
+    }
+    const Snapshot after = snapshot();
+    for (const auto& [name, value] : before) {
+        EXPECT_EQ(after.at(name), value) << name;
+    }
+}
+
+TEST_F(StateGuardGl, PlainPixelTransferIsPlain) {
+    const gl::StateGuard guard;
+    const Owner host(1);
+    host.bindAll();
+    host.setAll();
+    gl::StateGuard::usePlainPixelTransfer();
+    const Snapshot state = snapshot();
+    for (const char* name :
+         {"unpack buffer", "pack buffer", "unpack row length", "unpack image height",
+          "unpack skip pixels", "unpack skip rows", "unpack skip images", "pack row length",
+          "pack skip pixels", "pack skip rows"}) {
+        EXPECT_EQ(state.at(name), std::vector<double>{0.0}) << name;
+    }
+    EXPECT_EQ(state.at("unpack alignment"), std::vector<double>{1.0});
+    EXPECT_EQ(state.at("pack alignment"), std::vector<double>{1.0});
+}
+
+} // namespace slabcast

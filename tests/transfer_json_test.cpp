@@ -1,0 +1,157 @@
+#include "platform/io/transfer_json.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+namespace slabcast::test {
+namespace {
+
+constexpr const char* kValid = R"({"name": "CT bone", "unit": "HU", "opacityUnitMm": 2.0,
+    "points": [{"value": 150, "color": [0.75, 0.45, 0.30], "opacity": 0.0},
+               {"value": 700, "color": [1.0, 0.95, 0.85], "opacity": 0.5}]})";
+
+/// kValid with one piece replaced.
+std::string with(const std::string& piece, const std::string& replacement) {
+    std::string text = kValid;
+    const std::size_t at = text.find(piece);
+    EXPECT_NE(at, std::string::npos) << piece;
+    return text.replace(at, piece.size(), replacement);
+}
+
+TEST(TransferJson, everyFieldIsTaken) {
+    const Result<TransferFunction> tf = parseTransferFunction(kValid, "bone.json");
+    ASSERT_TRUE(tf) << tf.error().detail;
+    EXPECT_EQ(tf->name, "CT bone");
+    EXPECT_EQ(tf->unit, "HU");
+    EXPECT_EQ(tf->opacityUnitMm, 2.0);
+    ASSERT_EQ(tf->points.size(), 2u);
+    EXPECT_EQ(tf->points[0].value, 150.0);
+    EXPECT_EQ(tf->points[0].opacity, 0.0);
+    EXPECT_EQ(tf->points[1].color, glm::dvec3(1.0, 0.95, 0.85));
+    EXPECT_EQ(tf->points[1].opacity, 0.5);
+}
+
+TEST(TransferJson, unitAndOpacityUnitMayBeLeftOut) {
+    const Result<TransferFunction> tf =
+        parseTransferFunction(with(R"("unit": "HU", "opacityUnitMm": 2.0,)", ""), "x");
+    ASSERT_TRUE(tf) << tf.error().detail;
+    EXPECT_EQ(tf->unit, "");
+    EXPECT_EQ(tf->opacityUnitMm, 1.0);
+}
+
+TEST(TransferJson, everyErrorNamesItsPath) {
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {with("0.95", "1.4"), "points[1].color[1]: 1.4 is outside 0..1"},
+        {with("0.45", "-0.1"), "points[0].color[1]: -0.1 is outside 0..1"},
+        {with("0.45", "\"red\""), "points[0].color[1]: is string, expected a number"},
+        {with("[0.75, 0.45, 0.30]", "[0.75, 0.45]"), "points[0].color: expected three numbers"},
+        {with("\"color\": [0.75, 0.45, 0.30], ", ""), "points[0].color: is missing"},
+        {with("\"opacity\": 0.5", "\"opacity\": 1.5"), "points[1].opacity: 1.5 is outside 0..1"},
+        {with("\"opacity\": 0.5", "\"opacity\": null"),
+         "points[1].opacity: is null, expected a number"},
+        {with(", \"opacity\": 0.5", ""), "points[1].opacity: is missing"},
+        {with("\"value\": 700, ", ""), "points[1].value: is missing"},
+        {with("\"value\": 700", "\"value\": 100"), "points[1]"}, // out of order
+        {with("\"opacity\": 0.5", "\"opacity\": 0.5, \"opaque\": 1"),
+         "points[1].opaque: unknown key"},
+        {with("\"name\"", "\"nmae\""), "nmae: unknown key"},
+        {with("\"CT bone\"", "7"), "name: is number, expected a text"},
+        {with("2.0", "0"), "opacityUnitMm: 0 is outside"},
+        {with("2.0", "\"mm\""), "opacityUnitMm: is string"},
+        {R"({"name": "a"})", "points: expected a list"},
+        {R"({"name": "a", "points": []})", "points: expected a list"},
+        {R"({"name": "a", "points": [3]})", "points[0]: is number, expected an object"},
+        {"[1, 2]", "is array, expected an object"},
+        {with("]}]}", ""), "line"},
+        {with("700", "1e999"), "bone.json"},
+        {"", "bone.json"},
+    };
+    for (const auto& [text, part] : cases) {
+        SCOPED_TRACE(text);
+        const Result<TransferFunction> tf = parseTransferFunction(text, "bone.json");
+        ASSERT_FALSE(tf);
+        EXPECT_EQ(tf.error().code, ErrorCode::InvalidTransferFunction);
+        EXPECT_TRUE(tf.error().detail.starts_with("bone.json: ")) << tf.error().detail;
+        EXPECT_NE(tf.error().detail.find(part), std::string::npos) << tf.error().detail;
+        EXPECT_EQ(tf.error().detail.find('\n'), std::string::npos) << tf.error().detail;
+    }
+}
+
+TEST(TransferJson, filesAreRead) {
+    const auto path = std::filesystem::temp_directory_path() / "slabcast_transfer_json_test.json";
+    std::ofstream(path) << kValid;
+    EXPECT_TRUE(loadTransferFunction(path));
+    std::ofstream(path) << "{";
+    EXPECT_EQ(loadTransferFunction(path).error().code, ErrorCode::InvalidTransferFunction);
+    std::filesystem::remove(path);
+    EXPECT_EQ(loadTransferFunction(path).error().code, ErrorCode::FileNotFound);
+    EXPECT_EQ(loadTransferFunction(path.parent_path()).error().code, ErrorCode::FileUnreadable);
+}
+
+/// 10,000 voxels: 9,990 in the first bin, 10 in the last.
+VolumeStatistics skewed() {
+    VolumeStatistics statistics;
+    statistics.min = -100.0;
+    statistics.max = 412.0; // bins 2 wide
+    statistics.histogram[0] = 9980;
+    statistics.histogram[99] = 15; // reaches 99.9 %; ends at -100 + 100 * 2
+    statistics.histogram[255] = 5;
+    return statistics;
+}
+
+TEST(Presets, allAreValidAndShowSomething) {
+    ASSERT_EQ(presetNames(), (std::vector<std::string>{"angio", "ct-bone", "ct-bone-skin",
+                                                       "ct-lung", "linear", "mr"}));
+    for (const std::string& name : presetNames()) {
+        const Result<TransferFunction> tf = presetTransferFunction(name, skewed());
+        ASSERT_TRUE(tf) << tf.error().detail;
+        EXPECT_EQ(tf->unit, name.starts_with("ct-") ? "HU" : "") << name;
+        EXPECT_EQ(tf->points.front().opacity, 0.0) << name;
+        EXPECT_GT(tf->points.back().opacity, 0.0) << name;
+    }
+}
+
+TEST(Presets, relativeOnesAreLaidOverTheData) {
+    const TransferFunction linear = *presetTransferFunction("linear", skewed());
+    EXPECT_DOUBLE_EQ(linear.points.front().value, -100.0);
+    EXPECT_DOUBLE_EQ(linear.points.back().value, 412.0);
+    EXPECT_DOUBLE_EQ(presetTransferFunction("angio", skewed())->points.back().value, 412.0);
+    EXPECT_DOUBLE_EQ(presetTransferFunction("mr", skewed())->points.back().value, 100.0);
+    EXPECT_DOUBLE_EQ(presetTransferFunction("ct-bone", skewed())->points.front().value, 150.0);
+}
+
+TEST(Presets, constantDataKeepThePointsInOrder) {
+    VolumeStatistics flat;
+    flat.min = flat.max = 7.0;
+    flat.histogram[0] = 10;
+    for (const std::string& name : presetNames()) {
+        EXPECT_TRUE(presetTransferFunction(name, flat)) << name;
+    }
+    const TransferFunction mr = *presetTransferFunction("mr", flat);
+    EXPECT_LT(mr.points.front().value, mr.points.back().value);
+}
+
+TEST(Presets, unknownNameListsTheKnown) {
+    const Result<TransferFunction> tf = presetTransferFunction("bones", skewed());
+    ASSERT_FALSE(tf);
+    EXPECT_EQ(tf.error().code, ErrorCode::InvalidArgument);
+    EXPECT_NE(tf.error().detail.find("ct-bone"), std::string::npos);
+}
+
+TEST(Presets, defaultShowsSomethingOfTheData) {
+    VolumeStatistics head;
+    head.min = -1024;
+    head.max = 3033;
+    EXPECT_EQ(defaultPresetName(Modality::Ct, head), "ct-bone");
+    EXPECT_EQ(defaultPresetName(Modality::Mr, head), "mr");
+    EXPECT_EQ(defaultPresetName(Modality::Unknown, head), "linear");
+    head.max = 200;
+    EXPECT_EQ(defaultPresetName(Modality::Ct, head), "ct-lung");
+    head.min = -100;
+    EXPECT_EQ(defaultPresetName(Modality::Ct, head), "linear");
+}
+
+} // namespace
+} // namespace slabcast::test
