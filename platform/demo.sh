@@ -11,7 +11,7 @@ picture=$out/skull.png
 report=$out/sweep/report.html
 
 renderOptions=(--size 1024x1024 --tf ct-bone --shade phong)
-sweepOptions=(--size 256x256 --tf ct-bone --frames 6 --layers 1,2,4,8,12,16,24,32,64,444)
+sweepOptions=(--size 256x256 --tf ct-bone --frames 6 --layers "1,2,4,8,12,16,24,32,64,444")
 
 # newer TARGET INPUT...: the target exists and no input is newer.
 newer() {

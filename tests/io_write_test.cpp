@@ -67,7 +67,7 @@ std::vector<T> readBack(const std::filesystem::path& path, int width, int height
     EXPECT_EQ(file->spec().nchannels, channels);
     EXPECT_EQ(file->spec().format, type);
     std::vector<T> pixels(static_cast<std::size_t>(width * height * channels));
-    file->read_image(type, pixels.data());
+    file->read_image(0, 0, 0, channels, type, pixels.data());
     return pixels;
 }
 

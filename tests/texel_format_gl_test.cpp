@@ -60,15 +60,15 @@ TEST(JudgeTexelFormat, ExactFilterIsUsable) {
     const auto test =
         judgeTexelFormat(TexelFormat::R16, ramp([](double w) { return w; }), kGoodFetch);
     EXPECT_TRUE(test.usable) << test.reason;
-    EXPECT_EQ(test.maxFilterErrorSampled, 0.0);
+    EXPECT_EQ(test.maxFilterError, 0.0);
 }
 
 TEST(JudgeTexelFormat, EightBitWeightsAreUsableAndMeasured) {
     const auto cutOff = [](double w) { return std::floor(w * 256.0) / 256.0; };
     const auto unorm = judgeTexelFormat(TexelFormat::R16, ramp(cutOff), kGoodFetch);
     EXPECT_TRUE(unorm.usable) << unorm.reason;
-    EXPECT_GT(unorm.maxFilterErrorSampled, 0.0035);
-    EXPECT_LE(unorm.maxFilterErrorSampled, 1.0 / 256.0);
+    EXPECT_GT(unorm.maxFilterError, 0.0035);
+    EXPECT_LE(unorm.maxFilterError, 1.0 / 256.0);
 }
 
 TEST(JudgeTexelFormat, NearestIsNotUsableAndNamed) {
@@ -76,7 +76,7 @@ TEST(JudgeTexelFormat, NearestIsNotUsableAndNamed) {
                                        ramp([](double w) { return std::round(w); }), kGoodFetch);
     EXPECT_FALSE(test.usable);
     EXPECT_NE(test.reason.find("not filtered"), std::string::npos) << test.reason;
-    EXPECT_NEAR(test.maxFilterErrorSampled, 0.5, 0.001);
+    EXPECT_NEAR(test.maxFilterError, 0.5, 0.001);
 }
 
 TEST(JudgeTexelFormat, ZeroCoarseAndNanAreNotUsable) {
@@ -213,7 +213,7 @@ TEST_F(TexelFormatGl, SelfTestMeasuresEveryFormat) {
     ASSERT_EQ(tests.size(), 5U);
     for (const TexelFormatTest& test : tests) {
         const std::string prefix = std::string("texels_") + name(test.format) + "_";
-        RecordProperty(prefix + "filter_error", std::to_string(test.maxFilterErrorSampled));
+        RecordProperty(prefix + "filter_error", std::to_string(test.maxFilterError));
         RecordProperty(prefix + "reason", test.reason);
         EXPECT_EQ(test.format, tests[static_cast<std::size_t>(test.format)].format);
         EXPECT_FALSE(test.reason.empty());
@@ -221,7 +221,7 @@ TEST_F(TexelFormatGl, SelfTestMeasuresEveryFormat) {
             EXPECT_TRUE(test.usable) << name(test.format) << ": " << test.reason;
         }
         EXPECT_LE(test.maxFetchError, 1e-6) << name(test.format);
-        EXPECT_LE(test.maxFilterErrorSampled, 3.0 / 256.0 + 1.0 / 255.0) << name(test.format);
+        EXPECT_LE(test.maxFilterError, 3.0 / 256.0 + 1.0 / 255.0) << name(test.format);
     }
     if (!caps().norm16) {
         EXPECT_FALSE(entry(tests, TexelFormat::R16).usable);
@@ -244,8 +244,8 @@ TEST_F(TexelFormatGl, SoftwareDriverFiltersAsKnown) {
     if (caps().renderer.find("llvmpipe") == std::string::npos) {
         GTEST_SKIP() << "the renderer is " << caps().renderer;
     }
-    EXPECT_GT(entry(tests, TexelFormat::R8).maxFilterErrorSampled, 1.0 / 512.0);
-    EXPECT_LT(entry(tests, TexelFormat::R16F).maxFilterErrorSampled, 1e-6);
+    EXPECT_GT(entry(tests, TexelFormat::R8).maxFilterError, 1.0 / 512.0);
+    EXPECT_LT(entry(tests, TexelFormat::R16F).maxFilterError, 1e-6);
 }
 
 namespace {

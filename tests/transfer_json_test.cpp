@@ -64,7 +64,7 @@ TEST(TransferJson, everyErrorNamesItsPath) {
         {R"({"name": "a", "points": []})", "points: expected a list"},
         {R"({"name": "a", "points": [3]})", "points[0]: is number, expected an object"},
         {"[1, 2]", "is array, expected an object"},
-        {with("]}]}", ""), "line"},
+        {with("}]}", ""), "line"},
         {with("700", "1e999"), "bone.json"},
         {"", "bone.json"},
     };

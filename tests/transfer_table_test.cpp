@@ -21,8 +21,11 @@ TransferFunction tfOf(std::vector<TransferPoint> points, double unitMm = 1.0) {
 }
 
 double valueOf(const TransferTable& table, std::size_t texel) {
-    return table.firstValue + static_cast<double>(texel) * (table.lastValue - table.firstValue) /
-                                  static_cast<double>(table.texels.size() - 1);
+    const std::size_t last = table.texels.size() - 1;
+    return texel == last ? table.lastValue
+                         : table.firstValue + static_cast<double>(texel) *
+                                                  (table.lastValue - table.firstValue) /
+                                                  static_cast<double>(last);
 }
 
 TEST(TransferTable, SpansTheKnotsOnIntegers) {

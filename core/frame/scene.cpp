@@ -7,16 +7,14 @@
 
 namespace slabcast {
 
-Scene Scene::create(Volume volume, TexelFormat format, double filterErrorSampled) {
+Scene Scene::create(Volume volume, TexelFormat format, double filterErrorOfFullScale) {
     Scene scene;
     scene.volumeName_ = volume.name;
     scene.geometry_ = volume.geometry;
     scene.integerData_ = !isFloatingPoint(volume.type) && volume.rescaleSlope == 1.0;
     scene.statistics_ = computeStatistics(volume);
     scene.texels_ = encodeTexels(volume, scene.statistics_, format);
-    // Relative to a difference of two texels: the widest difference there is bounds every cell's.
-    scene.filterErrorSampled_ =
-        filterErrorSampled * (scene.statistics_.max - scene.statistics_.min) / scene.texels_.valueScale;
+    scene.filterErrorSampled_ = filterErrorOfFullScale * fullScaleSampled(format);
     return scene;
 }
 

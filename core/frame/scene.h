@@ -35,8 +35,8 @@ struct SkipOptions {
 class Scene {
 public:
     /// Turns the voxels into texels and lets the voxels go, so that the peak is volume + texels.
-    /// `filterErrorSampled`: what the self-test found, relative to the difference of two texels.
-    static Scene create(Volume volume, TexelFormat format, double filterErrorSampled);
+    /// `filterErrorOfFullScale`: what the self-test found (TexelFormatTest::maxFilterError).
+    static Scene create(Volume volume, TexelFormat format, double filterErrorOfFullScale);
 
     /// Replaces the look; builds the table, what pre-classification and skipping need, and nothing else.
     /// Fails: InvalidTransferFunction, InvalidArgument. Cost: O(voxels) where texels or a cloud are built.

@@ -19,15 +19,17 @@ struct TableAxis {
     bool whole = false; // no axis at all: any value may meet any texel
     int lastTexel = 0;
 
-    double at(double sampled) const {
-        return std::clamp(texelsPerSampled * sampled + texelAtZero, 0.0, double(lastTexel));
-    }
+    /// Table texels, widened before they are clamped: a value well outside the table reads its end
+    /// texel exactly and no neighbour, which keeps the air below a TF's first point empty.
     std::uint16_t below(double sampled) const {
-        return whole ? 0 : std::uint16_t(std::max(0, int(std::floor(at(sampled))) - 1));
+        return whole ? 0 : clamped(std::floor(texelsPerSampled * sampled + texelAtZero) - 1.0);
     }
     std::uint16_t above(double sampled) const {
-        return std::uint16_t(whole ? lastTexel
-                                   : std::min(lastTexel, int(std::ceil(at(sampled))) + 1));
+        return whole ? clamped(lastTexel)
+                     : clamped(std::ceil(texelsPerSampled * sampled + texelAtZero) + 1.0);
+    }
+    std::uint16_t clamped(double texel) const {
+        return std::uint16_t(std::clamp(texel, 0.0, double(lastTexel)));
     }
 };
 

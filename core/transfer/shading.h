@@ -2,8 +2,8 @@
 
 namespace slabcast {
 
-/// Blinn-Phong by the gradient of the data, two-sided. Where the gradient is too small to point anywhere the
-/// unlit colour is kept: it fades in between `gradientFloor` and twice that.
+/// Blinn-Phong by the gradient of the data, two-sided. Where the gradient is too small to point
+/// anywhere the unlit colour is kept: it fades in between `gradientFloor` and twice that.
 struct ShadingParameters {
     double ambient = 0.25;
     double diffuse = 0.75;
@@ -12,7 +12,8 @@ struct ShadingParameters {
     double gradientFloorPerMm = 0.0; // data units per mm; 0: every gradient but none at all shades
 };
 
-/// 0 where the gradient says nothing, 1 where it is trusted: smoothstep from the floor to twice the floor.
+/// 0 where the gradient says nothing, 1 where it is trusted: smoothstep from the floor to twice the
+/// floor.
 double shadingWeight(const ShadingParameters& parameters, double gradientPerMm);
 
 /// What light that does not depend on the eye does to a colour: ambient + diffuse * |n.l|.

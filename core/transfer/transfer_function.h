@@ -15,8 +15,8 @@ struct TransferPoint {
     double opacity = 0.0;  // of opacityUnitMm of this material
 };
 
-/// Piecewise linear in opacity and in encoded colour; two points at one value make a step (the second holds from
-/// the value on). Outside the points the end values hold.
+/// Piecewise linear in opacity and in encoded colour; two points at one value make a step (the
+/// second holds from the value on). Outside the points the end values hold.
 struct TransferFunction {
     std::string name;
     std::string unit;
@@ -27,8 +27,8 @@ struct TransferFunction {
 /// Largest opacity that a TF keeps: extinction stays finite. For renderer and references alike.
 inline constexpr double kMaxOpacity = 1.0 - 1.0 / 16777216.0;
 
-/// Checks order, ranges and finiteness (values within float32), at most two points at one value; clamps opacity to
-/// kMaxOpacity.
+/// Checks order, ranges and finiteness (values within float32), at most two points at one value;
+/// clamps opacity to kMaxOpacity.
 /// Fails: InvalidTransferFunction, with the path of the offending entry as `points[2].opacity`.
 /// Tested by: transfer_function_test.cpp
 Result<TransferFunction> validated(TransferFunction tf);
@@ -43,28 +43,30 @@ TransferSample evaluate(const TransferFunction& tf, double value);
 /// -ln(1 - opacity) / opacityUnitMm: the extinction coefficient in 1/mm.
 double extinctionPerMm(double opacity, double opacityUnitMm);
 
-/// Where compositing happens. Display: encoded values are blended, as most viewers do. Linear: light is blended.
+/// Where compositing happens. Display: encoded values are blended, as most viewers do. Linear:
+/// light is blended.
 enum class CompositingSpace : std::uint8_t { Display, Linear };
 
 const char* name(CompositingSpace space);
 glm::dvec3 linearFromSrgb(glm::dvec3 encoded);
 glm::dvec3 srgbFromLinear(glm::dvec3 linear);
 
-/// The TF as the GPU filters it: texel k at value firstValue + k * (lastValue - firstValue) / (size - 1);
-/// rgb in the compositing space (not premultiplied), alpha = extinction in 1/mm.
+/// The TF as the GPU filters it: texel k at value firstValue + k * (lastValue - firstValue) / (size
+/// - 1); rgb in the compositing space (not premultiplied), alpha = extinction in 1/mm.
 struct TransferTable {
     double firstValue = 0.0;
     double lastValue = 1.0;
     std::vector<glm::vec4> texels;
 };
 
-/// Spans the part of [dataMin, dataMax] in which the TF varies, one texel per integer value where that fits
-/// `maxSize` and the data are integers (then every knot at an integer is exact), else `maxSize` texels; two equal
-/// ones where the TF is constant over the data.
-/// Values are rounded to fp16, as the texture holds them; a visible texel keeps at least the smallest half.
-/// A texel is exactly zero in alpha where the TF is, with one exception: of a peak between two texels, higher than
-/// both, the nearer texel takes the whole, so that nothing visible is lost for being narrow. A step becomes a ramp
-/// from one texel to the next; a gap narrower than a texel is filled.
+/// Spans the part of [dataMin, dataMax] in which the TF varies, one texel per integer value where
+/// that fits `maxSize` and the data are integers (then every knot at an integer is exact), else
+/// `maxSize` texels; two equal ones where the TF is constant over the data.
+/// Values are rounded to fp16, as the texture holds them; a visible texel keeps at least the
+/// smallest half. A texel is exactly zero in alpha where the TF is, with one exception: of a peak
+/// between two texels, higher than both, the nearer texel takes the whole, so that nothing visible
+/// is lost for being narrow. A step becomes a ramp from one texel to the next; a gap narrower than
+/// a texel is filled.
 /// Tested by: transfer_table_test.cpp
 TransferTable makeTable(const TransferFunction& tf, double dataMin, double dataMax,
                         bool integerData, CompositingSpace space, int maxSize = 4096);

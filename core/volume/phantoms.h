@@ -15,10 +15,12 @@ struct PhantomInfo {
 
 std::vector<PhantomInfo> phantomList();
 
-/// A volume from a formula: `phantom:NAME` or `phantom:NAME:SIZE`, SIZE being N (cubic) or XxYxZ, default 128.
-/// Voxels are 1 mm, the box is centred on the origin, and shapes are scaled to its shortest edge.
+/// A volume from a formula: `phantom:NAME` or `phantom:NAME:SIZE`, SIZE being N (cubic) or XxYxZ,
+/// default 128. Voxels are 1 mm, the box is centred on the origin, and shapes are scaled to its
+/// shortest edge.
 /// Cost: O(voxels), all cores; nothing in it is random.
-/// Fails: InvalidArgument (unknown name, malformed size), EmptyVolume (a size of 0), SizeOverflow (over 2^30 voxels).
+/// Fails: InvalidArgument (unknown name, malformed size), EmptyVolume (a size of 0), SizeOverflow
+/// (over 2^30 voxels).
 /// Tested by: phantoms_test.cpp
 Result<Volume> makePhantom(std::string_view spec);
 

@@ -108,7 +108,7 @@ TexelFormatTest judgeTexelFormat(TexelFormat format, std::span<const FilterSampl
     const Scale& scale = scaleOf(format);
     const FilterVerdict filter = judgeFilter(scale, filtered);
     TexelFormatTest test{.format = format,
-                         .maxFilterErrorSampled = filter.worstError / scale.full,
+                         .maxFilterError = filter.worstError / scale.full,
                          .maxFetchError = worstFetchError(fetched) / scale.full};
     if (test.maxFetchError * scale.full > scale.fetchTolerance) {
         test.reason = formatted("fetched texels are off by %.2g of full scale", test.maxFetchError);
@@ -123,7 +123,7 @@ TexelFormatTest judgeTexelFormat(TexelFormat format, std::span<const FilterSampl
     } else {
         test.usable = true;
         test.reason =
-            formatted("filtered to within %.2g of full scale", test.maxFilterErrorSampled);
+            formatted("filtered to within %.2g of full scale", test.maxFilterError);
     }
     return test;
 }

@@ -16,7 +16,7 @@ struct TexelFormatTest {
     bool usable = false;
     /// Largest deviation from exact trilinear interpolation, relative to full scale (the difference of the two
     /// texels at the ends of the format's range). Exact formats are not filtered: 0.
-    double maxFilterErrorSampled = 0.0;
+    double maxFilterError = 0.0;
     /// Largest deviation of a texelFetch from the texel, relative to the format's full scale.
     double maxFetchError = 0.0;
     std::string reason{}; // one line, for people

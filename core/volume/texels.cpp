@@ -90,6 +90,10 @@ bool isExact(TexelFormat format) {
     return format == TexelFormat::Rg8Exact || format == TexelFormat::R32fExact;
 }
 
+double fullScaleSampled(TexelFormat format) {
+    return visitTexelFormat(format, [](auto codec) { return codec.kExactUnits / codec.kUnitsPerSampled; });
+}
+
 Texels encodeTexels(const Volume& volume, const VolumeStatistics& statistics, TexelFormat format) {
     SLABCAST_EXPECTS(!volume.voxels.empty(), volume.voxels.size());
     return visitVoxels(volume, [&]<class T>(std::span<const T> voxels) {

@@ -9,18 +9,20 @@
 namespace slabcast {
 
 /// How scalar voxels lie in a 3D texture.
-/// R8, R16, R16F are filtered by the texture unit. Rg8Exact (16-bit integers as high and low byte) and
-/// R32fExact are fetched eight times and interpolated in the shader, in float32.
+/// R8, R16, R16F are filtered by the texture unit. Rg8Exact (16-bit integers as high and low byte)
+/// and R32fExact are fetched eight times and interpolated in the shader, in float32.
 enum class TexelFormat : std::uint8_t { R8, R16, R16F, Rg8Exact, R32fExact };
 
 const char* name(TexelFormat format);
 std::size_t bytesPerTexel(TexelFormat format);
 bool isExact(TexelFormat format);
+/// Width of the range that the format's sampled values span: 1 for R8 and R16, 4096 for R16F.
+double fullScaleSampled(TexelFormat format);
 
 /// The texture's host copy. What the shader's field function returns for a texel is `sampled`
 /// (R8, R16: texel/max; R16F, R32fExact: the float; Rg8Exact: high*256+low), and the data value is
-/// `valueScale * sampled + valueBias`. The scale is positive, also for data with a negative slope: sampled order is
-/// value order.
+/// `valueScale * sampled + valueBias`. The scale is positive, also for data with a negative slope:
+/// sampled order is value order.
 struct Texels {
     TexelFormat format = TexelFormat::R8;
     glm::ivec3 dims{0};
@@ -31,18 +33,20 @@ struct Texels {
     std::vector<std::byte> data; // x fastest, tightly packed
 };
 
-/// Cost: one pass, all cores. R16F is offset and scaled so that integers of up to 12 bits stay exact
-/// (fp16 holds integers exactly to +-2048) and wider data use the format's best range. R8, R16 and Rg8Exact keep
-/// integers whose range fits exactly, and divide [min, max] into 255 or 65,535 even steps otherwise. R32fExact keeps
-/// floats as they are and integers within 2^25 steps. Values outside the statistics are clamped by integer formats.
+/// Cost: one pass, all cores. R16F is offset and scaled so that integers of up to 12 bits stay
+/// exact (fp16 holds integers exactly to +-2048) and wider data use the format's best range. R8,
+/// R16 and Rg8Exact keep integers whose range fits exactly, and divide [min, max] into 255 or
+/// 65,535 even steps otherwise. R32fExact keeps floats as they are and integers within 2^25 steps.
+/// Values outside the statistics are clamped by integer formats.
 /// Tested by: texels_test.cpp
 Texels encodeTexels(const Volume& volume, const VolumeStatistics& statistics, TexelFormat format);
 
 /// Data value of one texel as the renderer decodes it.
 double decodedValue(const Texels& texels, glm::ivec3 voxel);
 
-/// A monotone integer code per texel: code order is value order, so minima and maxima may be taken of codes.
-/// Code c stands for sampled values in [low(c), high(c)]; low == high except for R32fExact, whose floats are binned.
+/// A monotone integer code per texel: code order is value order, so minima and maxima may be taken
+/// of codes. Code c stands for sampled values in [low(c), high(c)]; low == high except for
+/// R32fExact, whose floats are binned.
 struct TexelCodes {
     glm::ivec3 dims{0};
     std::vector<std::uint16_t> codes;

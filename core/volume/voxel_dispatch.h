@@ -8,7 +8,8 @@
 
 namespace slabcast {
 
-/// Calls `visit(std::type_identity<T>{})` with the C++ type of the voxels: the one switch over voxel types.
+/// Calls `visit(std::type_identity<T>{})` with the C++ type of the voxels: the one switch over
+/// voxel types.
 template <class Visitor>
 decltype(auto) visitVoxelType(VoxelType type, Visitor&& visit) {
     switch (type) {
@@ -32,8 +33,8 @@ decltype(auto) visitVoxelType(VoxelType type, Visitor&& visit) {
     contractBreach(__func__, "a voxel type", static_cast<double>(type));
 }
 
-/// Calls `visit(std::span<const T>)` with all stored voxels. A volume's bytes come from `new`, so they are aligned
-/// for every voxel type.
+/// Calls `visit(std::span<const T>)` with all stored voxels. A volume's bytes come from `new`, so
+/// they are aligned for every voxel type.
 template <class Visitor>
 decltype(auto) visitVoxels(const Volume& volume, Visitor&& visit) {
     return visitVoxelType(volume.type, [&]<class T>(std::type_identity<T>) -> decltype(auto) {

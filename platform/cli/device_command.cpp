@@ -32,7 +32,7 @@ Result<void> deviceCommand() {
     fmt::print("texel formats, by drawing and reading back:\n");
     for (const TexelFormatTest& test : session->formats) {
         fmt::print("  {:<12} {:<9} filter error {:.3g}, fetch error {:.3g}: {}\n", name(test.format),
-                   test.usable ? "usable" : "unusable", test.maxFilterErrorSampled, test.maxFetchError, test.reason);
+                   test.usable ? "usable" : "unusable", test.maxFilterError, test.maxFetchError, test.reason);
     }
     VolumeStatistics ct;
     ct.min = -1024.0;

@@ -81,7 +81,7 @@ Result<LoadedScene> openScene(const InputOptions& options, const Session& sessio
     info.forecast = *forecast;
     const auto test = std::find_if(session.formats.begin(), session.formats.end(),
                                    [=](const TexelFormatTest& t) { return t.format == format; });
-    const double filterError = test == session.formats.end() ? 0.0 : test->maxFilterErrorSampled;
+    const double filterError = test == session.formats.end() ? 0.0 : test->maxFilterError;
     return LoadedScene{Scene::create(std::move(*volume), format, filterError), std::move(info)};
 }
 

@@ -9,9 +9,8 @@
 namespace slabcast {
 
 struct EglOptions {
-    int deviceIndex =
-        -1; // of the EGL devices, from 0; -1: the first way to a display that works
-    bool debug = false; // a debug context: the driver reports its errors (gl::DebugOutput)
+    int deviceIndex = -1; // of the EGL devices; -1: the first display that works
+    bool debug = false;   // a debug context: the driver reports its errors (gl::DebugOutput)
     bool preferSurfaceless = true; // Mesa's surfaceless platform before the devices
 };
 

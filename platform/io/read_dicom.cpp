@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include <fmt/format.h>
+#include <gdcmTrace.h>
 #include <itkGDCMImageIO.h>
 #include <itkGDCMSeriesFileNames.h>
 
@@ -15,10 +16,17 @@ namespace slabcast {
 
 namespace {
 
-constexpr double kSpacingTolerance = 0.1; // of the mean distance: scanners round positions
+constexpr double kSpacingTolerance = 0.1; // of the usual distance: scanners round positions
 
 const char* const kSeriesDescription = "0008|103e";
 const char* const kModality = "0008|0060";
+const char* const kBitsAllocated = "0028|0100";
+
+/// What matters is in the error that is returned.
+void silenceGdcm() {
+    gdcm::Trace::WarningOff();
+    gdcm::Trace::ErrorOff();
+}
 
 std::string tagOf(itk::GDCMImageIO& io, const char* tag) {
     std::string value;
@@ -35,6 +43,48 @@ void setModality(Volume& volume, itk::GDCMImageIO& io) {
     volume.unit = modality == "CT" ? "HU" : "";
 }
 
+/// Whether the file ends before its pixels do, which GDCM passes over in silence. Pixels that lie plainly in the file
+/// are found by their tag and length; of compressed ones the decoder must tell.
+bool endsEarly(const std::filesystem::path& path, itk::GDCMImageIO& io) {
+    constexpr std::size_t kSearchedBytes = 1 << 22; // other elements come first and are small
+    const std::int64_t bits = parseInteger(tagOf(io, kBitsAllocated)).value_or(0);
+    const auto length = static_cast<std::uint32_t>(io.GetDimensions(0) * io.GetDimensions(1) *
+                                                   io.GetDimensions(2) * bits / 8);
+    const std::uint32_t even = length + length % 2;
+    const std::string lengthBytes = {static_cast<char>(even), static_cast<char>(even >> 8),
+                                     static_cast<char>(even >> 16), static_cast<char>(even >> 24)};
+    std::ifstream file(path, std::ios::binary);
+    std::string head(kSearchedBytes, '\0');
+    file.read(head.data(), kSearchedBytes);
+    head.resize(static_cast<std::size_t>(file.gcount()));
+    const std::string tag = "\xE0\x7F\x10" + std::string(1, '\0'); // (7FE0,0010)
+    for (const std::string& representation : {std::string(), std::string("OW\0\0", 4),
+                                              std::string("OB\0\0", 4)}) { // implicit, explicit
+        const std::string element = tag + representation + lengthBytes;
+        const std::size_t found = head.find(element);
+        if (found != std::string::npos) {
+            return std::filesystem::file_size(path) < found + element.size() + length;
+        }
+    }
+    return false;
+}
+
+/// readVoxels() of a DICOM file.
+Result<void> readPixels(const std::filesystem::path& path, itk::GDCMImageIO& io,
+                        std::byte* voxels) {
+    if (endsEarly(path, io)) {
+        return fail(
+            ErrorCode::FileTruncated,
+            fmt::format("{}: ends before its pixels do; fetch the file again", path.string()));
+    }
+    return readVoxels(path, io, voxels);
+}
+
+Result<Volume> openDicom(const std::filesystem::path& path, itk::GDCMImageIO& io) {
+    silenceGdcm();
+    return openWithItk(path, io);
+}
+
 struct Slice {
     std::filesystem::path path;
     Volume header; // without voxels
@@ -46,7 +96,7 @@ std::string listOfSeries(itk::GDCMSeriesFileNames& names, const std::vector<std:
     for (const std::string& uid : uids) {
         const std::vector<std::string> files = names.GetFileNames(uid);
         const auto io = itk::GDCMImageIO::New();
-        const bool opened = openWithItk(files.front(), *io).has_value();
+        const bool opened = openDicom(files.front(), *io).has_value();
         const std::string description = opened ? tagOf(*io, kSeriesDescription) : "";
         list += fmt::format("{}{} ({}, {} files)", list.empty() ? "" : ", ", uid,
                             description.empty() ? "no description" : "'" + description + "'",
@@ -58,6 +108,7 @@ std::string listOfSeries(itk::GDCMSeriesFileNames& names, const std::vector<std:
 /// The files of the series asked for, or of the only one.
 Result<std::vector<std::string>> filesOfSeries(const std::filesystem::path& folder,
                                                const std::string& series) try {
+    silenceGdcm();
     const auto names = itk::GDCMSeriesFileNames::New();
     names->SetUseSeriesDetails(false); // a series is what shares a UID, nothing finer
     names->SetInputDirectory(folder.string());
@@ -89,7 +140,7 @@ Result<std::vector<std::string>> filesOfSeries(const std::filesystem::path& fold
 Result<std::vector<Slice>> openSlices(const std::vector<std::string>& files) {
     std::vector<Slice> slices;
     for (const std::string& file : files) {
-        Result<Volume> header = openWithItk(file, *itk::GDCMImageIO::New());
+        Result<Volume> header = openDicom(file, *itk::GDCMImageIO::New());
         if (!header) {
             return tl::unexpected(header.error());
         }
@@ -142,26 +193,35 @@ Result<void> checkAlike(const std::filesystem::path& folder, const std::vector<S
     return {};
 }
 
+double medianStep(const std::vector<Slice>& slices) {
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < slices.size(); ++i) {
+        steps.push_back(slices[i].alongNormalMm - slices[i - 1].alongNormalMm);
+    }
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    return *middle;
+}
+
 /// The third axis from the first slice to the last: right for a tilted gantry too, whose box is sheared.
 Result<VolumeGeometry> stackedGeometry(const std::filesystem::path& folder,
                                        const std::vector<Slice>& slices) {
-    VolumeGeometry geometry = slices.front().header.geometry;
-    const double count = static_cast<double>(slices.size() - 1);
-    const glm::dvec3 path = slices.back().header.geometry.originMm - geometry.originMm;
-    const double pitch = (slices.back().alongNormalMm - slices.front().alongNormalMm) / count;
+    const double usual = medianStep(slices);
     for (std::size_t i = 1; i < slices.size(); ++i) {
         const double step = slices[i].alongNormalMm - slices[i - 1].alongNormalMm;
-        if (!(std::abs(step - pitch) <= kSpacingTolerance * pitch) || pitch <= 0.0) {
+        if (!(std::abs(step - usual) <= kSpacingTolerance * usual) || usual <= 0.0) {
             return fail(
                 ErrorCode::InvalidGeometry,
                 fmt::format("{}: {} lies {:g} mm behind {}, where {:g} mm are usual; a slice "
                             "is missing or there twice: export the series again",
                             folder.string(), slices[i].path.filename().string(), step,
-                            slices[i - 1].path.filename().string(), pitch));
+                            slices[i - 1].path.filename().string(), usual));
         }
     }
+    VolumeGeometry geometry = slices.front().header.geometry;
+    const glm::dvec3 path = slices.back().header.geometry.originMm - geometry.originMm;
     geometry.dims.z = static_cast<int>(slices.size());
-    geometry.spacingMm.z = glm::length(path) / count;
+    geometry.spacingMm.z = glm::length(path) / static_cast<double>(slices.size() - 1);
     geometry.direction[2] = glm::normalize(path);
     return geometry;
 }
@@ -178,11 +238,11 @@ Result<Volume> readSlices(const std::vector<Slice>& slices, const VolumeGeometry
     std::byte* target = volume.voxels.data();
     for (const Slice& slice : slices) {
         const auto io = itk::GDCMImageIO::New();
-        const Result<Volume> opened = openWithItk(slice.path, *io);
+        const Result<Volume> opened = openDicom(slice.path, *io);
         if (!opened) {
             return tl::unexpected(opened.error());
         }
-        if (const Result<void> read = readVoxels(slice.path, *io, target); !read) {
+        if (const Result<void> read = readPixels(slice.path, *io, target); !read) {
             return tl::unexpected(read.error());
         }
         setModality(volume, *io);
@@ -195,16 +255,19 @@ Result<Volume> readSlices(const std::vector<Slice>& slices, const VolumeGeometry
 
 Result<Volume> readDicomFile(const std::filesystem::path& path) {
     const auto io = itk::GDCMImageIO::New();
-    Result<Volume> volume = readWithItk(path, *io);
-    if (volume) {
-        setModality(*volume, *io);
-        if (volume->geometry.dims.z == 1) {
-            return fail(ErrorCode::UnsupportedDims,
-                        fmt::format("{}: is a single slice; name the folder that holds the series",
-                                    path.string()));
-        }
+    Result<Volume> volume = openDicom(path, *io);
+    if (!volume) {
+        return volume;
     }
-    return volume;
+    if (volume->geometry.dims.z == 1) {
+        return fail(ErrorCode::UnsupportedDims,
+                    fmt::format("{}: is a single slice; name the folder that holds the series",
+                                path.string()));
+    }
+    volume->voxels.resize(volume->geometry.voxelCount() * bytesPerVoxel(volume->type));
+    setModality(*volume, *io);
+    const Result<void> read = readPixels(path, *io, volume->voxels.data());
+    return read ? std::move(volume) : tl::unexpected(read.error());
 }
 
 Result<Volume> readDicomSeries(const std::filesystem::path& folder, const std::string& series) {

@@ -151,7 +151,13 @@ Result<int> countPages(const std::filesystem::path& path) {
     while (file->seek_subimage(count, 0)) {
         ++count;
     }
-    file->geterror(); // the one that ended the loop
+    // After the last page comes no directory, or one that is announced but cannot be read.
+    const std::string why = file->geterror();
+    if (why.find("directory") != std::string::npos) {
+        return fail(ErrorCode::FileTruncated,
+                    fmt::format("{}: {}, after {} pages; the file ends early: fetch it again",
+                                path.string(), why, count));
+    }
     return count;
 }
 

@@ -198,12 +198,12 @@ Result<TransferFunction> loadTransferFunction(const std::filesystem::path& path)
             fmt::format("{}: no such transfer function file; check the path", path.string()));
     }
     std::ifstream file(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
     if (!file || std::filesystem::is_directory(path, ignored)) {
         return fail(ErrorCode::FileUnreadable,
                     fmt::format("{}: cannot be read; check that it is a file and its permissions",
                                 path.string()));
     }
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
     return parseTransferFunction(text, path.filename().string());
 }
 
