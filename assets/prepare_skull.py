@@ -3,9 +3,10 @@
 
 Usage: prepare_skull.py OUTPUT.nrrd [INPUT.inv3]
 
-An .inv3 is a gzipped tar: main.plist describes, matrix.dat holds int16 Hounsfield units, x fastest, slices from
-the neck to the crown. Rows run from the back of the head to the face, against LPS, so the second axis points to
-the front: direction (0, -1, 0). Columns run to the left, as LPS does. The origin puts the middle of the box at zero.
+An .inv3 is a gzipped tar: main.plist describes, matrix.dat holds int16 Hounsfield units, x fastest,
+slices from the neck to the crown. Rows run from the back of the head to the face, against LPS, so
+the second axis points to the front: direction (0, -1, 0). Columns run to the left, as LPS does. The
+origin puts the middle of the box at zero.
 """
 
 import os
@@ -24,7 +25,8 @@ class PrepareError(Exception):
 def read_project(path):
     """The description and the voxels' bytes."""
     if not os.path.exists(path):
-        raise PrepareError(f"{path}: not found; install it with: apt-get install invesalius-examples")
+        raise PrepareError(f"{path}: not found; install it with: "
+                           "apt-get install invesalius-examples")
     try:
         with tarfile.open(path, "r:gz") as archive:
             members = {os.path.basename(member.name): member for member in archive}
@@ -41,9 +43,10 @@ def check_matrix(path, plist, voxels):
     """Sizes in x, y, z, after checking that the voxels are what the description says."""
     depth, height, width = plist["matrix"]["shape"]
     wanted = 2 * depth * height * width
-    if plist["matrix"]["dtype"] != "int16" or len(voxels) != wanted:
-        raise PrepareError(f"{path}: {len(voxels)} bytes of {plist['matrix']['dtype']} where {wanted} "
-                           "of int16 are expected; reinstall invesalius-examples")
+    dtype = plist["matrix"]["dtype"]
+    if dtype != "int16" or len(voxels) != wanted:
+        raise PrepareError(f"{path}: {len(voxels)} bytes of {dtype} where {wanted} of int16 are "
+                           "expected; reinstall invesalius-examples")
     return width, height, depth
 
 

@@ -142,20 +142,16 @@ TEST_F(ImagesTest, truncatedFilesAreNamed) {
     const auto path = writePages<double>("a.tif", TypeDesc::DOUBLE);
     const std::uintmax_t size = std::filesystem::file_size(path);
     for (const std::uintmax_t kept :
-         {size - 8, size * 3 / 4, size / 2, size / 4, std::uintmax_t{20}, std::uintmax_t{0}}) {
+         {size - 8, size * 3 / 4, size / 2, size / 4, std::uintmax_t{20}}) {
         SCOPED_TRACE(kept);
         truncate(path, kept);
-        const Result<Volume> volume = loadVolume(path);
-        ASSERT_FALSE(volume);
-        const ErrorCode code = volume.error().code;
-        EXPECT_TRUE(code == ErrorCode::FileTruncated || code == ErrorCode::FileUnreadable)
-            << volume.error().detail;
-        EXPECT_NE(volume.error().detail.find("a.tif"), std::string::npos) << volume.error().detail;
+        expectFailure(loadVolume(path), ErrorCode::FileTruncated, "a.tif", "fetch");
     }
+    expectFailure(loadVolume(write("a.tif", "")), ErrorCode::FileUnreadable, "a.tif", "check");
     const auto png = writePage<std::uint16_t>("z1.png", 0, TypeDesc::UINT16, 64);
     writePage<std::uint16_t>("z2.png", 0, TypeDesc::UINT16, 64);
     std::filesystem::remove(path);
-    truncate(png, std::filesystem::file_size(png) / 2);
+    truncate(png, std::filesystem::file_size(png) - 30); // the end mark and some pixels
     expectFailure(loadVolume(folder_), ErrorCode::FileTruncated, "z1.png", "fetch");
 }
 

@@ -49,7 +49,7 @@ Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const g
 }
 
 Result<void> GpuScene::updateVolume(const Scene& scene, bool pre, const gl::Caps& caps) {
-    const bool current = pre ? classifiedLook_ == scene.lookGeneration() : scalarsOf_ == &scene.texels();
+    const bool current = pre ? classifiedLook_ == scene.lookGeneration() : scalars_ == scene.texelsGeneration();
     if (current) {
         return {};
     }
@@ -64,7 +64,7 @@ Result<void> GpuScene::updateVolume(const Scene& scene, bool pre, const gl::Caps
     const std::size_t perTexel = pre ? 4 : bytesPerTexel(scene.texels().format);
     volumeBytes_ = scene.geometry().voxelCount() * static_cast<std::int64_t>(perTexel);
     classifiedLook_ = pre ? scene.lookGeneration() : -1;
-    scalarsOf_ = pre ? nullptr : &scene.texels();
+    scalars_ = pre ? -1 : scene.texelsGeneration();
     return {};
 }
 

@@ -25,7 +25,8 @@ public:
 private:
     Result<void> updateVolume(const Scene& scene, bool pre, const gl::Caps& caps);
 
-    const Texels* scalarsOf_ = nullptr; // whose texels volume_ holds; null where it holds colours or nothing
+    // What the textures were made from; -1: nothing. volume_ holds scalars or colours.
+    int scalars_ = -1;
     int classifiedLook_ = -1;
     int tableLook_ = -1;
     int skipLook_ = -1;

@@ -144,9 +144,10 @@ struct Rectangle {
 /// A box as a view sees it: range of depth or distance, and rectangle in tangent space.
 struct Appearance {
     double front = std::numeric_limits<double>::infinity();
-    double back = 0.0;
+    double back = -std::numeric_limits<double>::infinity();
     Rectangle rectangle;
     bool reachesEye = false;
+    bool hidden = false; // by the near plane or behind the eye, with every layer that is sampled in it
 };
 
 Appearance appearance(const RayFrame& frame, const glm::dmat4& viewFromUvw, const VisibleBox& box) {
@@ -172,8 +173,11 @@ Appearance appearance(const RayFrame& frame, const glm::dmat4& viewFromUvw, cons
         }
     }
     result.reachesEye = result.front <= closest;
-    if (frame.lattice.kind == LatticeKind::Shells && result.back > 0.0) {
-        result.front = std::max(0.0, glm::length(centre) - reach);
+    // A layer that the near plane cuts may be sampled before it, and shows up to half its depth beyond its sample.
+    result.hidden = result.back + frame.spacing / 2.0 <= std::max(frame.nearDepth, 0.0);
+    if (frame.lattice.kind == LatticeKind::Shells) {
+        // What lies behind the eye is sampled by the layer around the eye alone.
+        result.front = result.front < 0.0 ? 0.0 : std::max(0.0, glm::length(centre) - reach);
         result.back = farthest;
     }
     return result;
@@ -237,7 +241,7 @@ ProxyStack tightStack(const RayFrame& frame, const Frustum& frustum, const glm::
     const double half = frame.lattice.total / 2.0;
     for (const VisibleBox& box : boxes) {
         const Appearance seen = appearance(frame, viewFromUvw, box);
-        if (seen.back <= frame.nearDepth || seen.back <= 0.0) {
+        if (seen.hidden) {
             continue;
         }
         const glm::dvec2 low = seen.reachesEye ? viewLow : glm::max(seen.rectangle.low, viewLow);

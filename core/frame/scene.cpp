@@ -1,11 +1,21 @@
 #include "core/frame/scene.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 
 #include "core/skip/cell_visibility.h"
 
 namespace slabcast {
+
+namespace {
+
+int nextGeneration() {
+    static std::atomic<int> last{0};
+    return ++last;
+}
+
+} // namespace
 
 Scene Scene::create(Volume volume, TexelFormat format, double filterErrorOfFullScale) {
     Scene scene;
@@ -14,6 +24,7 @@ Scene Scene::create(Volume volume, TexelFormat format, double filterErrorOfFullS
     scene.integerData_ = !isFloatingPoint(volume.type) && volume.rescaleSlope == 1.0;
     scene.statistics_ = computeStatistics(volume);
     scene.texels_ = encodeTexels(volume, scene.statistics_, format);
+    scene.texelsGeneration_ = nextGeneration();
     scene.filterErrorSampled_ = filterErrorOfFullScale * fullScaleSampled(format);
     return scene;
 }
@@ -28,7 +39,7 @@ Result<void> Scene::setLook(const Look& look, const SkipOptions& skip, int maxTa
     if (look_.shading && look_.shading->gradientFloorPerMm <= 0.0) {
         look_.shading->gradientFloorPerMm = defaultGradientFloorPerMm();
     }
-    ++lookGeneration_;
+    lookGeneration_ = nextGeneration();
     table_ = makeTable(look_.tf, statistics_.min, statistics_.max, integerData_, look_.space, maxTableSize);
     classified_.reset();
     if (look_.classification == Classification::Pre) {

@@ -53,7 +53,8 @@ public:
     const ClassifiedTexels* classified() const { return classified_ ? &*classified_ : nullptr; }
     const ProximityCloud* cloud() const { return cloud_ ? &*cloud_ : nullptr; }
     double cloudBuildMs() const { return cloudBuildMs_; }
-    /// Counts the looks: textures made from an older one are stale.
+    /// Numbers that no other texels and no other look of this process have: textures made from others are stale.
+    int texelsGeneration() const { return texelsGeneration_; }
     int lookGeneration() const { return lookGeneration_; }
     /// Gradient magnitude below which shading fades where the look does not say: 0.5 % of the data's range per voxel.
     double defaultGradientFloorPerMm() const;
@@ -73,6 +74,7 @@ private:
     std::optional<ClassifiedTexels> classified_;
     std::optional<ProximityCloud> cloud_;
     double cloudBuildMs_ = 0.0;
+    int texelsGeneration_ = 0;
     int lookGeneration_ = 0;
 };
 

@@ -5,7 +5,8 @@
 namespace slabcast {
 
 Result<void> renderCommand(const RenderOptions& options);
-Result<void> sweepCommand(const SweepOptions& options);
+/// `command`: as it was typed, for the report.
+Result<void> sweepCommand(const SweepOptions& options, const std::string& command);
 Result<void> infoCommand(const InputOptions& options);
 Result<void> deviceCommand();
 

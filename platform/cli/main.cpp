@@ -13,6 +13,14 @@ int finished(const slabcast::Result<void>& result) {
     return 1;
 }
 
+std::string commandLine(int argc, char** argv) {
+    std::string line = "slabcast";
+    for (int k = 1; k < argc; ++k) {
+        line += std::string(" ") + argv[k];
+    }
+    return line;
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -61,7 +69,7 @@ int main(int argc, char** argv) {
         return finished(renderCommand(render));
     }
     if (*sweepApp) {
-        return finished(sweepCommand(sweep));
+        return finished(sweepCommand(sweep, commandLine(argc, argv)));
     }
     if (*infoApp) {
         return finished(infoCommand(info));

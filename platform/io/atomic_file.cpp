@@ -18,7 +18,8 @@ tl::unexpected<Error> unwritable(const std::filesystem::path& path, std::string_
     return fail(ErrorCode::FileUnwritable, fmt::format("{}: {}; {}", path.string(), why, remedy));
 }
 
-/// In the same folder, so that renaming is one step, and with the same ending, which image writers go by.
+/// In the same folder, so that renaming is one step, and with the same ending, which image
+/// writers go by.
 std::filesystem::path temporaryBeside(const std::filesystem::path& path) {
     static std::atomic<int> counter{0};
     return path.parent_path() / fmt::format(".{}.{}-{}{}", path.stem().string(), getpid(),

@@ -53,7 +53,8 @@ Result<void> checkSpacings(const std::string& path, const std::vector<double>& s
     return {};
 }
 
-/// Whether the stream holds `bytes` and ends as it should, checksum included. Goes through all of it.
+/// Whether the stream holds `bytes` and ends as it should, checksum included. Goes through all
+/// of it.
 bool inflates(const FileHeader& header, std::int64_t bytes) {
     constexpr int kZlibOrGzip = 15 + 32; // zlib.h, inflateInit2()
     std::ifstream file(header.dataFile, std::ios::binary);

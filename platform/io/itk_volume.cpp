@@ -86,11 +86,7 @@ VolumeGeometry geometryOf(const itk::ImageIOBase& io) {
 Error itkError(ErrorCode code, const std::filesystem::path& path, const std::exception& exception,
                std::string_view remedy) {
     const auto* ofItk = dynamic_cast<const itk::ExceptionObject*>(&exception);
-    std::string cause;
-    for (const std::string_view word : words(ofItk ? ofItk->GetDescription() : exception.what())) {
-        cause += cause.empty() ? "" : " ";
-        cause += word;
-    }
+    const std::string cause = oneLine(ofItk ? ofItk->GetDescription() : exception.what());
     return {code, fmt::format("{}: {}; {}", path.string(), cause, remedy)};
 }
 

@@ -11,11 +11,13 @@
 
 namespace slabcast {
 
-/// ITK throws; this is the border. The exception's text becomes one line behind the path and the remedy.
+/// ITK throws; this is the border. The exception's text becomes one line behind the path and
+/// the remedy.
 Error itkError(ErrorCode code, const std::filesystem::path& path, const std::exception& exception,
                std::string_view remedy);
 
-/// Opens `path` and takes type, dims and geometry from it; no voxels yet. DICOM also gives modality and unit.
+/// Opens `path` and takes type, dims and geometry from it; no voxels yet. DICOM also gives
+/// modality and unit.
 /// Fails: FileUnreadable, UnsupportedType, UnsupportedDims, EmptyVolume, SizeOverflow.
 Result<Volume> openWithItk(const std::filesystem::path& path, itk::ImageIOBase& io);
 

@@ -66,6 +66,15 @@ std::vector<std::string_view> words(std::string_view text) {
     return found;
 }
 
+std::string oneLine(std::string_view text) {
+    std::string line;
+    for (const std::string_view word : words(text)) {
+        line += line.empty() ? "" : " ";
+        line += word;
+    }
+    return line;
+}
+
 std::optional<std::int64_t> parseInteger(std::string_view text) {
     const std::string_view digits = withoutPlus(trimmed(text));
     std::int64_t value = 0;

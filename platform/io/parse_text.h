@@ -18,8 +18,11 @@ std::vector<std::string_view> split(std::string_view text, char separator);
 /// Between blanks, as many as there are.
 std::vector<std::string_view> words(std::string_view text);
 
-/// The whole text as a number, or nothing. Integers beyond 64 bits become the nearest that fits, so that size checks
-/// report them as what they are.
+/// Words with one blank between them: what other libraries say over several lines.
+std::string oneLine(std::string_view text);
+
+/// The whole text as a number, or nothing. Integers beyond 64 bits become the nearest that
+/// fits, so that size checks report them as what they are.
 std::optional<std::int64_t> parseInteger(std::string_view text);
 /// Also "nan" and "inf".
 std::optional<double> parseReal(std::string_view text);

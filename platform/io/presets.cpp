@@ -30,7 +30,8 @@ double percentile(const VolumeStatistics& statistics, double share) {
     return statistics.min + position * (statistics.max - statistics.min);
 }
 
-/// Lays values of 0 to 1 over the data. Where all voxels are alike, any span keeps the points in order.
+/// Lays values of 0 to 1 over the data. Where all voxels are alike, any span keeps the points
+/// in order.
 void layOver(TransferFunction& tf, double low, double high) {
     const double span = high > low ? high - low : 1.0;
     for (TransferPoint& point : tf.points) {

@@ -43,8 +43,9 @@ void setModality(Volume& volume, itk::GDCMImageIO& io) {
     volume.unit = modality == "CT" ? "HU" : "";
 }
 
-/// Whether the file ends before its pixels do, which GDCM passes over in silence. Pixels that lie plainly in the file
-/// are found by their tag and length; of compressed ones the decoder must tell.
+/// Whether the file ends before its pixels do, which GDCM passes over in silence. Pixels that
+/// lie plainly in the file are found by their tag and length; of compressed ones the decoder
+/// must tell.
 bool endsEarly(const std::filesystem::path& path, itk::GDCMImageIO& io) {
     constexpr std::size_t kSearchedBytes = 1 << 22; // other elements come first and are small
     const std::int64_t bits = parseInteger(tagOf(io, kBitsAllocated)).value_or(0);
@@ -203,7 +204,8 @@ double medianStep(const std::vector<Slice>& slices) {
     return *middle;
 }
 
-/// The third axis from the first slice to the last: right for a tilted gantry too, whose box is sheared.
+/// The third axis from the first slice to the last: right for a tilted gantry too, whose box is
+/// sheared.
 Result<VolumeGeometry> stackedGeometry(const std::filesystem::path& folder,
                                        const std::vector<Slice>& slices) {
     const double usual = medianStep(slices);

@@ -1,12 +1,13 @@
 #include <algorithm>
 #include <array>
-#include <limits>
+#include <memory>
 
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include "platform/io/parse_text.h"
 #include "platform/io/readers.h"
+#include "platform/io/tiff_extent.h"
 
 namespace slabcast {
 
@@ -39,7 +40,20 @@ struct Page {
 tl::unexpected<Error> unreadable(const std::filesystem::path& path, const std::string& why) {
     return fail(ErrorCode::FileUnreadable,
                 fmt::format("{}: {}; check that the file is a whole image", path.string(),
-                            why.empty() ? "no image format is recognised" : why));
+                            why.empty() ? "no image format is recognised" : oneLine(why)));
+}
+
+Result<std::unique_ptr<OIIO::ImageInput>> open(const std::filesystem::path& path) {
+    if (!isWholeTiff(path)) {
+        return fail(
+            ErrorCode::FileTruncated,
+            fmt::format("{}: the file ends before its pages do; fetch it again", path.string()));
+    }
+    std::unique_ptr<OIIO::ImageInput> file = OIIO::ImageInput::open(path.string());
+    if (!file) {
+        return unreadable(path, OIIO::geterror());
+    }
+    return file;
 }
 
 /// Millimetres per pixel along one axis, where the file says so, else 1.
@@ -71,11 +85,11 @@ Result<PixelType> greyType(const std::filesystem::path& path, const OIIO::ImageS
 
 /// What all pages must share, from the first; voxels are made room for.
 Result<Volume> emptyVolume(const Page& first, std::size_t pageCount) {
-    const auto file = OIIO::ImageInput::open(first.path.string());
+    const auto file = open(first.path);
     if (!file) {
-        return unreadable(first.path, OIIO::geterror());
+        return tl::unexpected(file.error());
     }
-    const OIIO::ImageSpec& spec = file->spec();
+    const OIIO::ImageSpec& spec = (*file)->spec();
     const Result<PixelType> type = greyType(first.path, spec);
     if (!type) {
         return tl::unexpected(type.error());
@@ -114,7 +128,7 @@ Result<void> readPage(const Page& page, const Volume& volume, OIIO::ImageInput& 
     if (!file.read_image(page.index, 0, 0, 1, OIIO::TypeDesc(type->read), target)) {
         return fail(ErrorCode::FileTruncated,
                     fmt::format("{}: {}; the pixels end early or are damaged: fetch the file again",
-                                page.path.string(), file.geterror()));
+                                page.path.string(), oneLine(file.geterror())));
     }
     return {};
 }
@@ -126,15 +140,15 @@ Result<Volume> readPages(const std::vector<Page>& pages) {
     }
     const std::size_t pageBytes = volume->voxels.size() / pages.size();
     std::byte* target = volume->voxels.data();
-    std::unique_ptr<OIIO::ImageInput> file;
+    Result<std::unique_ptr<OIIO::ImageInput>> file;
     for (const Page& page : pages) {
         if (page.index == 0) {
-            file = OIIO::ImageInput::open(page.path.string());
+            file = open(page.path);
         }
         if (!file) {
-            return unreadable(page.path, OIIO::geterror());
+            return tl::unexpected(file.error());
         }
-        if (const Result<void> read = readPage(page, *volume, *file, target); !read) {
+        if (const Result<void> read = readPage(page, *volume, **file, target); !read) {
             return tl::unexpected(read.error());
         }
         target += pageBytes;
@@ -143,20 +157,13 @@ Result<Volume> readPages(const std::vector<Page>& pages) {
 }
 
 Result<int> countPages(const std::filesystem::path& path) {
-    const auto file = OIIO::ImageInput::open(path.string());
+    const auto file = open(path);
     if (!file) {
-        return unreadable(path, OIIO::geterror());
+        return tl::unexpected(file.error());
     }
     int count = 1;
-    while (file->seek_subimage(count, 0)) {
+    while ((*file)->seek_subimage(count, 0)) {
         ++count;
-    }
-    // After the last page comes no directory, or one that is announced but cannot be read.
-    const std::string why = file->geterror();
-    if (why.find("directory") != std::string::npos) {
-        return fail(ErrorCode::FileTruncated,
-                    fmt::format("{}: {}, after {} pages; the file ends early: fetch it again",
-                                path.string(), why, count));
     }
     return count;
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "platform/io/atomic_file.h"
+#include "platform/io/parse_text.h"
 
 namespace slabcast {
 
@@ -24,7 +25,8 @@ Result<void> writeImage(const std::filesystem::path& path, const char* format,
         if (!written) {
             return fail(ErrorCode::FileUnwritable,
                         fmt::format("{}: {}; check the folder's permissions and the space left",
-                                    path.string(), file ? file->geterror() : OIIO::geterror()));
+                                    path.string(),
+                                    oneLine(file ? file->geterror() : OIIO::geterror())));
         }
         return {};
     });

@@ -29,7 +29,8 @@ struct Field {
     std::string value;
 };
 
-/// The two formats differ in little: how the first line looks, how a field is written and what ends the header.
+/// The two formats differ in little: how the first line looks, how a field is written and what
+/// ends the header.
 struct TextFormat {
     std::string_view magic;     // how the file begins; empty: with a field
     std::string_view lastField; // after whose line the voxels begin; empty: after an empty line
@@ -219,7 +220,8 @@ std::filesystem::path besideHeader(const std::filesystem::path& path, std::strin
     return several ? std::filesystem::path() : path.parent_path() / name;
 }
 
-/// How many bytes to leave out before the voxels; -1, as both formats have it: the voxels end where the file does.
+/// How many bytes to leave out before the voxels; -1, as both formats have it: the voxels end
+/// where the file does.
 std::int64_t parseSkip(std::string_view written) {
     constexpr std::int64_t kFarBeyondAnyFile = std::int64_t{1} << 60;
     return std::min(parseInteger(written).value_or(0), kFarBeyondAnyFile);
