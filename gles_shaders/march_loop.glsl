@@ -4,22 +4,19 @@ vec4 march(Ray ray, ivec2 range) {
     vec4 sum = vec4(0.0);
     int i = range.x;
     while (i < range.y) {
-        vec3 uvw = samplePosition(ray, i);
-        int free = freeLayers(uvw, ray);
-        while (free > 0 && i + free < range.y) {
-            i += free;
-            uvw = samplePosition(ray, i);
-            free = freeLayers(uvw, ray);
+        Stretch stretch = stretchAt(samplePosition(ray, i), ray);
+        while (stretch.free && i + stretch.layers < range.y) {
+            i += stretch.layers;
+            stretch = stretchAt(samplePosition(ray, i), ray);
         }
-        if (free > 0) {
+        int stop = stretch.free ? i : min(i + stretch.layers, range.y);
+        for (; i < stop && !terminated(sum.a); ++i) {
+            countLayer();
+            sum += (1.0 - sum.a) * classify(samplePosition(ray, i), lengthInside(ray, i), ray);
+        }
+        if (stretch.free || terminated(sum.a)) {
             break;
         }
-        countLayer();
-        sum += (1.0 - sum.a) * classify(uvw, lengthInside(ray, i), ray);
-        if (terminated(sum.a)) {
-            break;
-        }
-        ++i;
     }
     return sum;
 }

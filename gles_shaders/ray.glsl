@@ -3,6 +3,7 @@
 struct Ray {
     vec3 centre;
     vec3 step;
+    vec3 inverseStep; // kFar along axes that the ray does not move along
     float layerLengthMm;
     float entry; // offsets between which the ray is inside the box and beyond the near plane
     float exit;
@@ -11,12 +12,12 @@ struct Ray {
 const float kFar = 1.0e30;
 
 /// Offsets at which one coordinate lies in [0, 1].
-vec2 slabOffsets(float centre, float slope) {
-    if (abs(slope) < 1.0e-25) {
+vec2 slabOffsets(float centre, float inverseSlope) {
+    if (inverseSlope == kFar) {
         return centre >= 0.0 && centre <= 1.0 ? vec2(-kFar, kFar) : vec2(kFar, -kFar);
     }
-    float a = (0.0 - centre) / slope;
-    float b = (1.0 - centre) / slope;
+    float a = (0.0 - centre) * inverseSlope;
+    float b = (1.0 - centre) * inverseSlope;
     return vec2(min(a, b), max(a, b));
 }
 
@@ -46,9 +47,10 @@ Ray rayOfFragment(vec2 fragCoord) {
         ray.layerLengthMm = direction0.w * directionY.w;
         nearOffset = (centreY.w * lengthPerDepth - sphere.w) * directionX.w;
     }
-    vec2 x = slabOffsets(ray.centre.x, ray.step.x);
-    vec2 y = slabOffsets(ray.centre.y, ray.step.y);
-    vec2 z = slabOffsets(ray.centre.z, ray.step.z);
+    ray.inverseStep = mix(1.0 / ray.step, vec3(kFar), lessThan(abs(ray.step), vec3(1.0e-25)));
+    vec2 x = slabOffsets(ray.centre.x, ray.inverseStep.x);
+    vec2 y = slabOffsets(ray.centre.y, ray.inverseStep.y);
+    vec2 z = slabOffsets(ray.centre.z, ray.inverseStep.z);
     ray.entry = max(max(x.x, y.x), max(z.x, nearOffset));
     ray.exit = min(min(x.y, y.y), z.y);
     return ray;

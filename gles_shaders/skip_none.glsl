@@ -1,8 +1,13 @@
+// Nothing is skipped: one stretch for the whole ray.
+struct Stretch {
+    int layers; // from the sample on, the sample included
+    bool free;  // certain to be invisible
+};
+
 bool segmentIsEmpty(Ray ray, ivec2 range) {
     return false;
 }
 
-/// Layers from this sample on that are certain to be invisible.
-int freeLayers(vec3 uvw, Ray ray) {
-    return 0;
+Stretch stretchAt(vec3 uvw, Ray ray) {
+    return Stretch(1 << 24, false);
 }

@@ -2,21 +2,35 @@
 // 1 + the free distance around any point of the block in units of skipMap.w. See core/skip/proximity_cloud.h.
 uniform usampler3D freeLengths;
 
-int freeCount(vec3 uvw) {
-    ivec3 block = clamp(ivec3(uvw * skipMap.xyz), ivec3(0), skipBlocks.xyz);
+struct Stretch {
+    int layers; // from the sample on, the sample included
+    bool free;  // certain to be invisible
+};
+
+int freeCount(vec3 blockPosition) {
     countSkipFetch();
-    return int(texelFetch(freeLengths, block, 0).r);
+    return int(texelFetch(freeLengths, clamp(ivec3(blockPosition), ivec3(0), skipBlocks.xyz), 0).r);
+}
+
+/// Layers strictly within the free length, and at least the sample's own.
+int layersWithin(int count, Ray ray) {
+    return int(ceil(float(count - 1) * skipMap.w * kBelow / ray.layerLengthMm));
 }
 
 /// One fetch in the segment's middle proves all of it empty, where the free length reaches both ends.
 bool segmentIsEmpty(Ray ray, ivec2 range) {
     int middle = (range.x + range.y - 1) / 2;
-    int reach = max(middle - range.x, range.y - 1 - middle);
-    int n = freeCount(samplePosition(ray, middle));
-    return n > 0 && (reach == 0 || float(n - 1) * skipMap.w * kBelow > float(reach) * ray.layerLengthMm);
+    int count = freeCount(samplePosition(ray, middle) * skipMap.xyz);
+    return count > 0 && max(1, layersWithin(count, ray)) > max(middle - range.x, range.y - 1 - middle);
 }
 
-int freeLayers(vec3 uvw, Ray ray) {
-    int n = freeCount(uvw);
-    return n == 0 ? 0 : max(1, int(ceil(float(n - 1) * skipMap.w * kBelow / ray.layerLengthMm)));
+/// What one fetch decides: all layers within the block, free or not, and those within its free length. Blocks are
+/// tested with a voxel's margin, so rounding at their faces does not matter.
+Stretch stretchAt(vec3 uvw, Ray ray) {
+    vec3 position = uvw * skipMap.xyz;
+    int count = freeCount(position);
+    vec3 ahead = vec3(greaterThan(ray.step, vec3(0.0))) - (position - floor(position));
+    vec3 toFace = abs(ahead * ray.inverseStep / skipMap.xyz);
+    int inBlock = int(min(min(toFace.x, min(toFace.y, toFace.z)), 1.0e6)) + 1;
+    return Stretch(count > 0 ? max(inBlock, layersWithin(count, ray)) : inBlock, count > 0);
 }

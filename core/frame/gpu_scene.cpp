@@ -54,6 +54,7 @@ Result<void> GpuScene::updateVolume(const Scene& scene, bool pre, const gl::Caps
         return {};
     }
     volume_.release(); // before the next is allocated: two volumes may not fit
+    scalars_ = classifiedLook_ = -1;
     SLABCAST_EXPECTS(!pre || scene.classified() != nullptr, pre);
     Result<void> done = pre ? keep(volume_, uploadClassified(scene.classified()->texels.data(),
                                                              scene.classified()->dims, caps))

@@ -1,16 +1,26 @@
+#include <cstdlib>
+#include <functional>
+#include <new>
+#include <utility>
+#include <vector>
+
 #include <fmt/core.h>
 
 #include "platform/cli/commands.h"
+#include "platform/cli/help_formatter.h"
 
 namespace {
 
-/// Exit status as documented: 0 done, 1 failed with one line on stderr, 2 bad usage.
-int finished(const slabcast::Result<void>& result) {
+using namespace slabcast;
+
+enum ExitStatus { kDone = 0, kFailed = 1, kBadUsage = 2 };
+
+int finished(const Result<void>& result) {
     if (result) {
-        return 0;
+        return kDone;
     }
     fmt::print(stderr, "slabcast: {}\n", result.error().detail);
-    return 1;
+    return kFailed;
 }
 
 std::string commandLine(int argc, char** argv) {
@@ -21,58 +31,58 @@ std::string commandLine(int argc, char** argv) {
     return line;
 }
 
-} // namespace
-
-int main(int argc, char** argv) {
-    using namespace slabcast;
-    CLI::App app("Slabcast draws volumes (CT, MR, simulation) on GLES 3.2 class GPUs.\n"
-                 "Start with: slabcast render phantom:marschner-lobb -o picture.png\n",
-                 "slabcast");
-    app.require_subcommand(1);
+int run(int argc, char** argv) {
+    CLI::App app("Slabcast draws volumes (CT, MR, simulation) on GLES 3.2 class GPUs.", "slabcast");
+    app.formatter(std::make_shared<HelpFormatter>());
+    app.failure_message(usageMessage);
+    app.require_subcommand(0, 1); // none is answered below, with the help
     app.set_help_all_flag("--help-all", "help of all commands");
+    app.footer(
+        "Start with: slabcast render phantom:marschner-lobb -o picture.png\n"
+        "Exit status: 0 done; 1 failed, with one line that says why and what to do; 2 bad usage");
 
+    std::vector<std::pair<CLI::App*, std::function<Result<void>()>>> commands;
+    const auto add = [&](const char* name, const char* help, std::function<Result<void>()> action) {
+        commands.emplace_back(app.add_subcommand(name, help), std::move(action));
+        return commands.back().first;
+    };
     RenderOptions render;
-    CLI::App* renderApp = app.add_subcommand("render", "draw a picture");
-    bindScene(*renderApp, render);
-    renderApp->add_option("-o,--output", render.output, "picture to write: .png or .exr")->required();
-    auto* layers = renderApp->add_option("--layers", render.settings.totalLayers, "total layers instead of --layer-spacing");
-    layers->check(CLI::Range(1, 1 << 20));
-    renderApp->add_option("--planes", render.settings.planes,
-                          "proxy planes: 1 is ray casting, as many as layers is slicing; by default measured")
-        ->check(CLI::Range(1, 1 << 20));
-    renderApp->add_option("--frames", render.frames, "turn the volume once around in this many frames and time them; the first is written")
-        ->check(CLI::Range(1, 100000));
-    renderApp->add_option("--stats", render.statsFile, "write device, plan, frame times and work counters as JSON");
-    renderApp->add_flag("--explain", render.explain, "print what the plan chose and why");
-
+    bindRender(*add("render", "Draws a picture", [&] { return renderCommand(render); }), render);
     SweepOptions sweep;
-    sweep.size = {512, 512};
-    CLI::App* sweepApp = app.add_subcommand("sweep", "measure the planes to layers ratio, with and without skipping");
-    bindScene(*sweepApp, sweep);
-    sweepApp->add_option("--layers", sweep.layersPerPlane, "layers per plane to measure, as 1,2,4,8; 0 is all in one plane")
-        ->delimiter(',')
-        ->check(CLI::Range(0, 1 << 20));
-    sweepApp->add_option("--frames", sweep.frames, "frames of one turn per row")->check(CLI::Range(1, 10000))->capture_default_str();
-    sweepApp->add_option("--out", sweep.outputFolder, "folder for sweep.json, sweep.csv and report.html")->required();
-
+    bindSweep(*add("sweep", "Measures the planes to layers ratio, with and without skipping",
+                   [&] { return sweepCommand(sweep, commandLine(argc, argv)); }),
+              sweep);
     InputOptions info;
-    CLI::App* infoApp = app.add_subcommand("info", "what a volume is and what drawing it takes");
-    bindInput(*infoApp, info);
-    CLI::App* deviceApp = app.add_subcommand("device", "what the GPU can do, which texel formats were chosen and why");
+    bindInfo(*add("info", "Tells what a volume is and what drawing it takes",
+                  [&] { return infoCommand(info); }),
+             info);
+    add("device", "Tells what the GPU can do, which texel formats were chosen and why",
+        deviceCommand)
+        ->footer("Example: what a headset without float extensions would get\n"
+                 "  SLABCAST_MASK_EXTENSIONS=mobile-strict slabcast device");
 
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : 2;
+        return app.exit(error) == 0 ? kDone : kBadUsage;
     }
-    if (*renderApp) {
-        return finished(renderCommand(render));
+    for (const auto& [command, action] : commands) {
+        if (command->parsed()) {
+            return finished(action());
+        }
     }
-    if (*sweepApp) {
-        return finished(sweepCommand(sweep, commandLine(argc, argv)));
-    }
-    if (*infoApp) {
-        return finished(infoCommand(info));
-    }
-    return *deviceApp ? finished(deviceCommand()) : 2;
+    fmt::print(stderr, "{}\n", app.help());
+    return kBadUsage;
+}
+
+} // namespace
+
+int main(int argc, char** argv) try {
+    // EGL's loader else reports on stderr, over several lines, what our own error says in one.
+    setenv("EGL_LOG_LEVEL", "fatal", 0);
+    return run(argc, argv);
+} catch (const std::bad_alloc&) {
+    return finished(
+        fail(ErrorCode::Internal,
+             "out of memory: take a smaller --size, or a smaller volume with --downsample"));
 }

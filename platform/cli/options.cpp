@@ -1,172 +1,304 @@
 #include "platform/cli/options.h"
 
-#include <map>
-
 #include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include "core/volume/phantoms.h"
+#include "platform/cli/option_kinds.h"
+#include "platform/io/transfer_json.h"
 
 namespace slabcast {
 
 namespace {
 
-/// Exactly three numbers separated by commas.
-glm::dvec3 parseTriple(const std::string& text) {
-    glm::dvec3 value;
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &value.x, &value.y, &value.z, &rest) != 3) {
-        throw CLI::ValidationError(text, "three numbers separated by commas are needed");
-    }
-    return value;
-}
+constexpr int kMaxLayers = 1 << 20;
+constexpr int kMaxEdge = 16384;
+constexpr double kMaxDistanceRadii = 1e6; // rays are right up to here
 
-glm::ivec2 parseSize(const std::string& text) {
-    glm::ivec2 size(0);
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%dx%d%c", &size.x, &size.y, &rest) != 2 || size.x < 1 || size.y < 1 ||
-        size.x > 16384 || size.y > 16384) {
-        throw CLI::ValidationError(text, "WIDTHxHEIGHT in pixels is needed, each from 1 to 16384");
-    }
-    return size;
-}
-
-std::optional<glm::dvec3> parseBackground(const std::string& text) {
-    if (text == "none") {
+std::optional<OrbitCamera> parseCamera(const std::string& word) {
+    const auto parts = split(word, ',');
+    if (parts.size() != 3) {
         return std::nullopt;
     }
-    unsigned rgb = 0;
-    char rest = 0;
-    if (text.size() != 6 || std::sscanf(text.c_str(), "%6x%c", &rgb, &rest) != 1) {
-        throw CLI::ValidationError(text, "RRGGBB in hexadecimal or none is needed");
+    const auto azimuth = parseReal(parts[0]);
+    const auto elevation = parseReal(parts[1]);
+    const auto distance = parseReal(parts[2]);
+    const auto isAngle = [](std::optional<double> degrees) {
+        return degrees && std::abs(*degrees) <= 360.0;
+    };
+    if (!isAngle(azimuth) || !isAngle(elevation) || !distance ||
+        !(*distance >= 0.0 && *distance <= kMaxDistanceRadii)) {
+        return std::nullopt;
     }
+    return OrbitCamera{*azimuth, *elevation, *distance};
+}
+
+std::optional<glm::ivec2> parseSize(const std::string& word) {
+    const auto parts = split(word, 'x');
+    if (parts.size() != 2) {
+        return std::nullopt;
+    }
+    const auto width = parseInteger(parts[0]);
+    const auto height = parseInteger(parts[1]);
+    const auto isEdge = [](std::optional<std::int64_t> edge) {
+        return edge && *edge >= 1 && *edge <= kMaxEdge;
+    };
+    return isEdge(width) && isEdge(height) ? std::optional(glm::ivec2(*width, *height))
+                                           : std::nullopt;
+}
+
+/// Nothing where it cannot be read; a nothing within where there is to be no background.
+std::optional<std::optional<glm::dvec3>> parseBackground(const std::string& word) {
+    if (word == "none") {
+        return std::optional<glm::dvec3>();
+    }
+    if (word.size() != 6 || word.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos) {
+        return std::nullopt;
+    }
+    const unsigned long rgb = std::stoul(word, nullptr, 16);
     return glm::dvec3(rgb >> 16 & 255U, rgb >> 8 & 255U, rgb & 255U) / 255.0;
 }
 
-std::optional<double> parseTermination(const std::string& text) {
-    double value = 0.0;
-    char rest = 0;
-    if (text == "off") {
-        return std::nullopt;
+std::optional<std::optional<double>> parseTermination(const std::string& word) {
+    if (word == "off") {
+        return std::optional<double>();
     }
-    if (std::sscanf(text.c_str(), "%lf%c", &value, &rest) != 1 || !(value > 0.0 && value <= 1.0)) {
-        throw CLI::ValidationError(text, "an opacity above 0 and up to 1, or off, is needed");
-    }
-    return value;
+    const auto opacity = parseReal(word);
+    return opacity && *opacity > 0.0 && *opacity <= 1.0 ? std::optional(opacity) : std::nullopt;
 }
 
-/// An option whose words stand for values.
-template <class T>
-CLI::Option* addChoice(CLI::App& command, const char* flag, const std::map<std::string, T>& choices,
-                       std::function<void(T)> set, const char* help) {
-    std::vector<std::string> words;
-    for (const auto& [word, value] : choices) {
-        words.push_back(word);
+std::optional<std::vector<int>> parseCounts(const std::string& word) {
+    std::vector<int> counts;
+    for (const std::string_view part : split(word, ',')) {
+        const auto count = parseInteger(part);
+        if (!count || *count < 0 || *count > kMaxLayers) {
+            return std::nullopt;
+        }
+        counts.push_back(static_cast<int>(*count));
     }
-    return command
-        .add_option_function<std::string>(flag, [=](const std::string& word) { set(choices.at(word)); }, help)
-        ->check(CLI::IsMember(words));
+    return counts;
+}
+
+std::string phantomNames() {
+    std::vector<std::string> names;
+    for (const PhantomInfo& phantom : phantomList()) {
+        names.push_back(phantom.name);
+    }
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+void bindInput(CLI::App& command, InputOptions& o) {
+    command
+        .add_option("VOLUME", o.volume,
+                    fmt::format("a file (NRRD, NIfTI, MetaImage, TIFF), a folder (DICOM, images), "
+                                "or phantom:NAME[:SIZE] "
+                                "with a NAME of {} and a SIZE as 128 or 256x256x64",
+                                phantomNames()))
+        ->required();
+    const auto group = "Volume";
+    command
+        .add_option("--series", o.series, "the DICOM series to take, where a folder holds several")
+        ->type_name("UID")
+        ->group(group);
+    command
+        .add_option("--raw", o.raw,
+                    "layout of a file without header, as 256x256x128,uint16,1x1x1.5")
+        ->type_name("DIMS,TYPE,SPACING")
+        ->group(group);
+    addNumber(command, "--downsample", o.downsample, 1, 1024,
+              "average blocks of N voxels along each axis")
+        ->type_name("N")
+        ->default_str("1")
+        ->group(group);
+}
+
+/// How the volume lies on the GPU.
+void bindTexture(CLI::App& command, InputOptions& o) {
+    const auto group = "Volume";
+    command
+        .add_flag(
+            "--exact", o.exact,
+            "keep every voxel exactly: 8 fetches per sample instead of the texture unit's filter")
+        ->group(group);
+    addNumber(command, "--gpu-budget", o.gpuBudgetMib, 0.001, 1e9,
+              "refuse a volume whose texture takes more, and name the --downsample that fits")
+        ->type_name("MIB")
+        ->default_str("what the device can")
+        ->group(group);
 }
 
 void bindCamera(CLI::App& command, SceneOptions& o) {
-    command
-        .add_option_function<std::string>(
-            "--camera",
-            [&o](const std::string& text) {
-                const glm::dvec3 v = parseTriple(text);
-                o.camera = {v.x, v.y, v.z};
-            },
-            "azimuth and elevation in degrees, distance in bounding-sphere radii; azimuth 0 sees the face")
-        ->type_name("AZ,EL,DIST")
-        ->default_str("0,10,2.5");
-    command.add_option("--fov", o.fovDegrees, "vertical field of view in degrees")
-        ->type_name("DEG")
-        ->check(CLI::Range(0.01, 179.0))
-        ->capture_default_str();
-    command.add_option("--stereo", o.stereoIpdMm, "two eyes this far apart, side by side, each of half the width")
-        ->type_name("IPD_MM")
-        ->check(CLI::Range(0.0, 1e6));
-    command
-        .add_option_function<std::string>(
-            "--background", [&o](const std::string& text) { o.background = parseBackground(text); },
-            "what is behind the volume, or none for a transparent picture")
-        ->type_name("RRGGBB")
-        ->default_str("000000");
-    command
-        .add_option_function<std::string>(
-            "--size", [&o](const std::string& text) { o.size = parseSize(text); }, "picture size in pixels")
+    const auto group = "Picture and camera";
+    addParsed<glm::ivec2>(command, "--size", o.size, parseSize,
+                          fmt::format("WIDTHxHEIGHT in pixels, each from 1 to {}", kMaxEdge),
+                          "in pixels")
         ->type_name("WxH")
-        ->default_str(fmt::format("{}x{}", o.size.x, o.size.y));
+        ->default_str(fmt::format("{}x{}", o.size.x, o.size.y))
+        ->group(group);
+    addParsed<OrbitCamera>(
+        command, "--camera", o.camera, parseCamera,
+        "AZ,EL,DIST: two angles from -360 to 360 degrees and a distance from 0 to 1e6",
+        "azimuth and elevation in degrees, distance in bounding-sphere radii; azimuth 0 sees the "
+        "face")
+        ->type_name("AZ,EL,DIST")
+        ->default_str(fmt::format("{:g},{:g},{:g}", o.camera.azimuthDegrees,
+                                  o.camera.elevationDegrees, o.camera.distanceRadii))
+        ->group(group);
+    addNumber(command, "--fov", o.fovDegrees, 0.01, 179.0, "vertical field of view in degrees")
+        ->type_name("DEG")
+        ->default_str(fmt::format("{:g}", o.fovDegrees))
+        ->group(group);
+    addNumber(command, "--stereo", o.stereoIpdMm, 0.0, 1e6,
+              "two eyes this far apart, side by side, each of half the width; 63 for people")
+        ->type_name("IPD_MM")
+        ->default_str("off")
+        ->group(group);
+    addParsed<std::optional<glm::dvec3>>(
+        command, "--background", o.background, parseBackground, "RRGGBB in hexadecimal, or none",
+        "what is behind the volume, or none for a transparent picture")
+        ->type_name("RRGGBB|none")
+        ->default_str("000000")
+        ->group(group);
 }
 
 void bindLook(CLI::App& command, SceneOptions& o) {
     Settings& s = o.settings;
-    command.add_option("--tf", o.tf, "transfer function: a preset (ct-bone, ct-bone-skin, ct-lung, mr, angio, linear) "
-                                     "or a JSON file; by default chosen by modality and range");
-    addChoice<Classification>(command, "--classify",
-                              {{"post", Classification::Post}, {"preclassified", Classification::Pre}},
-                              [&s](Classification c) { s.classification = c; },
-                              "classify interpolated values, or interpolate classified texels (default: post)");
-    addChoice<bool>(command, "--shade", {{"off", false}, {"phong", true}}, [&s](bool on) { s.shaded = on; },
-                    "Blinn-Phong with a head light (default: off)");
-    addChoice<CompositingSpace>(command, "--space",
-                                {{"display", CompositingSpace::Display}, {"linear", CompositingSpace::Linear}},
-                                [&s](CompositingSpace v) { s.space = v; },
-                                "blend encoded values as most viewers do, or light (default: display)");
-    addChoice<TargetFormat>(command, "--target", {{"rgba8", TargetFormat::Rgba8}, {"rgba16f", TargetFormat::Rgba16f}},
-                            [&s](TargetFormat v) { s.target = v; }, "what planes are blended into (default: rgba8)");
+    const auto group = "Look";
+    command
+        .add_option("--tf", o.tf,
+                    fmt::format("transfer function: a .json file or a preset, one of {}",
+                                fmt::join(presetNames(), ", ")))
+        ->type_name("NAME|FILE")
+        ->default_str("by modality and range")
+        ->group(group);
+    addChoice(command, "--classify", s.classification,
+              {{"post", Classification::Post}, {"preclassified", Classification::Pre}},
+              "look colours up after filtering voxels, or filter colours")
+        ->group(group);
+    addChoice(command, "--shade", s.shaded, {{"off", false}, {"phong", true}},
+              "Blinn-Phong with a head light")
+        ->group(group);
+    addChoice(command, "--space", s.space,
+              {{"display", CompositingSpace::Display}, {"linear", CompositingSpace::Linear}},
+              "blend encoded values as most viewers do, or light")
+        ->group(group);
+    addChoice(command, "--target", s.target,
+              {{"rgba8", TargetFormat::Rgba8}, {"rgba16f", TargetFormat::Rgba16f}},
+              "what planes are blended into")
+        ->group(group);
 }
 
 void bindLayers(CLI::App& command, SceneOptions& o) {
     Settings& s = o.settings;
-    command.add_option("--layer-spacing", s.layerSpacingVoxels, "distance of layers in units of the smallest voxel edge")
+    const auto group = "Layers, planes and skipping";
+    addNumber(command, "--layer-spacing", s.layerSpacingVoxels, 0.001, 1e6,
+              "distance of layers in units of the smallest voxel edge")
         ->type_name("VOXELS")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    addChoice<LatticeKind>(command, "--lattice", {{"planar", LatticeKind::Planar}, {"shells", LatticeKind::Shells}},
-                           [&s](LatticeKind v) { s.lattice = v; },
-                           "layers at equal depth or at equal distance from the eye (default: planar)");
-    addChoice<SegmentForm>(command, "--form",
-                           {{"auto", SegmentForm::Auto}, {"unrolled", SegmentForm::Unrolled}, {"loop", SegmentForm::Loop}},
-                           [&s](SegmentForm v) { s.form = v; },
-                           "segments written out layer by layer, or as a loop (default: auto, by device and length)");
-    addChoice<std::optional<SkipStructure>>(
-        command, "--skip",
-        {{"auto", std::nullopt}, {"none", SkipStructure::None}, {"proximity", SkipStructure::Proximity}},
-        [&s](std::optional<SkipStructure> v) { s.skip = v; },
-        "how empty space is skipped; never changes the picture (default: auto, by what is visible)");
-    command.add_option("--skip-block", o.skipBlockEdge, "edge of the skip structure's blocks in voxels")
-        ->check(CLI::IsMember({1, 2, 4, 8}))
-        ->capture_default_str();
-    addChoice<bool>(command, "--tighten", {{"on", true}, {"off", false}}, [&s](bool on) { s.tighten = on; },
-                    "planes as rectangles around what is visible in their slab, or the sphere's 10-gons (default: on)");
-    command
-        .add_option_function<std::string>(
-            "--termination", [&s](const std::string& text) { s.termination = parseTermination(text); },
-            "opacity at which a segment is left, or off")
-        ->type_name("A")
-        ->default_str("0.9995");
-}
-
-} // namespace
-
-void bindInput(CLI::App& command, InputOptions& o) {
-    command.add_option("VOLUME", o.volume, "a file (NRRD, NIfTI, MetaImage, TIFF), a folder (DICOM, images), or phantom:NAME[:SIZE]")
-        ->required();
-    command.add_option("--series", o.series, "the DICOM series to take, where a folder holds several");
-    command.add_option("--raw", o.raw, "layout of a file without header, as 256x256x128,uint16,1x1x1.5")
-        ->type_name("DIMS,TYPE,SPACING");
-    command.add_option("--downsample", o.downsample, "average blocks of N voxels along each axis")
-        ->type_name("N")
-        ->check(CLI::Range(1, 1024));
-    command.add_flag("--exact", o.exact, "keep every voxel exactly: 8 fetches per sample instead of the texture unit's filter");
-    command.add_option("--gpu-budget", o.gpuBudgetMib, "refuse volumes whose texture is larger than this")
-        ->type_name("MIB")
-        ->check(CLI::PositiveNumber);
+        ->default_str(fmt::format("{:g}", s.layerSpacingVoxels))
+        ->group(group);
+    addChoice(command, "--lattice", s.lattice,
+              {{"planar", LatticeKind::Planar}, {"shells", LatticeKind::Shells}},
+              "layers at equal depth, or at equal distance from the eye")
+        ->group(group);
+    addChoice(command, "--form", s.form,
+              {{"auto", SegmentForm::Auto},
+               {"unrolled", SegmentForm::Unrolled},
+               {"loop", SegmentForm::Loop}},
+              "segments written out layer by layer, or as a loop; auto goes by device and length")
+        ->group(group);
+    addChoice(command, "--skip", s.skip,
+              {{"auto", std::nullopt},
+               {"none", SkipStructure::None},
+               {"proximity", SkipStructure::Proximity}},
+              "how empty space is skipped; never changes the picture; auto goes by what is visible")
+        ->group(group);
+    addChoice(command, "--skip-block", o.skipBlockEdge, {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}},
+              "edge of the skip structure's blocks in voxels")
+        ->group(group);
+    addChoice(command, "--tighten", s.tighten, {{"on", true}, {"off", false}},
+              "planes as rectangles around what is visible in their slab, or the sphere's 10-gons")
+        ->group(group);
+    addParsed<std::optional<double>>(command, "--termination", s.termination, parseTermination,
+                                     "an opacity above 0 and up to 1, or off",
+                                     "opacity at which a segment is left, or off")
+        ->type_name("A|off")
+        ->default_str(fmt::format("{:.4f}", s.termination.value_or(1.0)))
+        ->group(group);
 }
 
 void bindScene(CLI::App& command, SceneOptions& o) {
     bindInput(command, o.input);
+    bindTexture(command, o.input);
     bindCamera(command, o);
     bindLook(command, o);
     bindLayers(command, o);
+}
+
+} // namespace
+
+void bindRender(CLI::App& command, RenderOptions& o) {
+    const auto output = "Output";
+    command.add_option("-o,--output", o.output, "picture to write, .png or .exr")
+        ->required()
+        ->type_name("FILE")
+        ->group(output);
+    addNumber(command, "--frames", o.frames, 1, 100000,
+              "turn the volume once around in N frames and time them; the first is written")
+        ->type_name("N")
+        ->default_str(fmt::format("{}", o.frames))
+        ->group(output);
+    command
+        .add_option("--stats", o.statsFile,
+                    "write device, plan, frame times and work counters as JSON")
+        ->type_name("FILE")
+        ->group(output);
+    command.add_flag("--explain", o.explain, "print what the plan chose and why")->group(output);
+    bindScene(command, o);
+    const auto layers = "Layers, planes and skipping";
+    addNumber(command, "--layers", o.settings.totalLayers, 1, kMaxLayers,
+              "layers in all, instead of --layer-spacing")
+        ->type_name("N")
+        ->default_str("by spacing")
+        ->group(layers);
+    addNumber(command, "--planes", o.settings.planes, 1, kMaxLayers,
+              "proxy planes: 1 is ray casting, as many as layers is slicing")
+        ->type_name("N")
+        ->default_str("the fastest of several, measured")
+        ->group(layers);
+    command.footer("Example: a skull from the side, shaded, with the reasons for what was chosen\n"
+                   "  slabcast render skull.nrrd -o skull.png --tf ct-bone --shade phong --camera "
+                   "90,10,2.5 --explain");
+}
+
+void bindSweep(CLI::App& command, SweepOptions& o) {
+    const auto group = "Output";
+    o.size = {512, 512};
+    command
+        .add_option("--out", o.outputFolder,
+                    "folder for sweep.json, sweep.csv and report.html; made where it is missing")
+        ->required()
+        ->type_name("FOLDER")
+        ->group(group);
+    addParsed<std::vector<int>>(
+        command, "--layers", o.layersPerPlane, parseCounts,
+        fmt::format("whole numbers from 0 to {} with commas between", kMaxLayers),
+        "layers per plane to measure; 1 is slicing, 0 is all in one plane: ray casting")
+        ->type_name("N,N,...")
+        ->default_str(fmt::format("{},0", fmt::join(kUnrollLengths, ",")))
+        ->group(group);
+    addNumber(command, "--frames", o.frames, 1, 10000, "frames of one turn per row")
+        ->type_name("N")
+        ->default_str(fmt::format("{}", o.frames))
+        ->group(group);
+    bindScene(command, o);
+    command.footer("Example: what each ratio costs on this device; look at sweep/report.html\n"
+                   "  slabcast sweep phantom:vessels:128 --layers 1,4,16,64,0 --out sweep");
+}
+
+void bindInfo(CLI::App& command, InputOptions& o) {
+    bindInput(command, o);
+    command.footer("Example: half the resolution of voxels without a header\n"
+                   "  slabcast info head.raw --raw 256x256x128,uint16,1x1x1.5 --downsample 2");
 }
 
 } // namespace slabcast

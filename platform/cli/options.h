@@ -38,7 +38,10 @@ struct SweepOptions : SceneOptions {
     int frames = 12;
 };
 
-void bindInput(CLI::App& command, InputOptions& options);
-void bindScene(CLI::App& command, SceneOptions& options);
+// Each binds the options of one command, with its help; values that do not parse throw
+// CLI::ParseError. `options` must outlive the parsing.
+void bindRender(CLI::App& command, RenderOptions& options);
+void bindSweep(CLI::App& command, SweepOptions& options);
+void bindInfo(CLI::App& command, InputOptions& options);
 
 } // namespace slabcast

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "platform/io/atomic_file.h"
 #include "platform/io/save_image.h"
 
 namespace slabcast {
@@ -12,12 +13,7 @@ Result<bool> pictureIsEncoded(const std::filesystem::path& path) {
         return fail(ErrorCode::InvalidArgument,
                     path.string() + ": pictures are written as .png or .exr: give a name that ends so");
     }
-    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-    if (!std::filesystem::is_directory(folder)) {
-        return fail(ErrorCode::FileUnwritable, path.string() + ": the folder " + folder.string() +
-                                                   " does not exist: make it or give another");
-    }
-    return ending == ".png";
+    return checkWritable(path).map([&] { return ending == ".png"; });
 }
 
 Result<void> savePicture(const std::filesystem::path& path, glm::ivec2 size, const std::vector<glm::vec4>& pixels,

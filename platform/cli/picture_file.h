@@ -9,7 +9,8 @@
 
 namespace slabcast {
 
-/// Whether the ending is one that savePicture() knows. To be asked before the work. Fails: InvalidArgument.
+/// Whether the ending is one that savePicture() knows, and a file can be written there. To be asked before the work.
+/// Fails: InvalidArgument, FileUnwritable.
 Result<bool> pictureIsEncoded(const std::filesystem::path& path); // true: .png, sRGB-encoded; false: .exr, light
 
 /// Top row first. RGB where `opaque`, else RGBA. Atomic.

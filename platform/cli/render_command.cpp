@@ -35,10 +35,26 @@ nlohmann::json stats(Stage& stage, const FramePlan& plan, const std::vector<doub
               {"gpu_other_bytes", gpu.otherBytes}}}};
 }
 
+/// Both outputs are known to be writable before any work is done, so that neither is left without the other.
+Result<bool> checkOutputs(const RenderOptions& options) {
+    if (!options.statsFile.empty()) {
+        if (const Result<void> sound = checkWritable(options.statsFile); !sound) {
+            return tl::unexpected(sound.error());
+        }
+        std::error_code error;
+        const auto picture = std::filesystem::weakly_canonical(options.output, error);
+        if (std::filesystem::weakly_canonical(options.statsFile, error) == picture) {
+            return fail(ErrorCode::InvalidArgument,
+                        options.output + ": is named for both picture and statistics; give --stats another name");
+        }
+    }
+    return pictureIsEncoded(options.output);
+}
+
 } // namespace
 
 Result<void> renderCommand(const RenderOptions& options) {
-    const Result<bool> encoded = pictureIsEncoded(options.output);
+    const Result<bool> encoded = checkOutputs(options);
     if (!encoded) {
         return tl::unexpected(encoded.error());
     }

@@ -43,11 +43,17 @@ private:
     std::filesystem::path path_;
 };
 
-Result<void> checkTarget(const std::filesystem::path& path) {
+} // namespace
+
+Result<void> checkWritable(const std::filesystem::path& path) {
     std::error_code error;
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
     if (!std::filesystem::is_directory(folder, error)) {
-        return unwritable(path, "the folder does not exist", "create it first");
+        return unwritable(path, fmt::format("there is no folder {}", folder.string()),
+                          "make it or name another");
+    }
+    if (access(folder.c_str(), W_OK) != 0) {
+        return unwritable(path, std::strerror(errno), "check the folder's permissions");
     }
     const std::filesystem::file_status status = std::filesystem::status(path, error);
     if (!path.has_filename() || (exists(status) && !is_regular_file(status))) {
@@ -56,10 +62,8 @@ Result<void> checkTarget(const std::filesystem::path& path) {
     return {};
 }
 
-} // namespace
-
 Result<void> writeFileAtomically(const std::filesystem::path& path, const FileWriter& write) {
-    if (const Result<void> sound = checkTarget(path); !sound) {
+    if (const Result<void> sound = checkWritable(path); !sound) {
         return sound;
     }
     const TemporaryFile temporary(temporaryBeside(path));

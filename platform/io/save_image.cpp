@@ -1,5 +1,8 @@
 #include "platform/io/save_image.h"
 
+#include <vector>
+
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -10,7 +13,8 @@ namespace slabcast {
 
 namespace {
 
-/// `format` rather than the file's ending decides, so that any name may be given.
+/// `format` rather than the file's ending decides, so that any name may be given. Encoded in memory first, because
+/// OpenImageIO's PNG writer does not notice a full disk.
 Result<void> writeImage(const std::filesystem::path& path, const char* format,
                         const OIIO::ImageSpec& spec, const void* pixels) {
     if (spec.width < 1 || spec.height < 1) {
@@ -18,18 +22,19 @@ Result<void> writeImage(const std::filesystem::path& path, const char* format,
                     fmt::format("{}: an image of {} x {} pixels; choose a size of at least 1 x 1",
                                 path.string(), spec.width, spec.height));
     }
-    return writeFileAtomically(path, [&](const std::filesystem::path& temporary) -> Result<void> {
-        const auto file = OIIO::ImageOutput::create(format);
-        const bool written = file && file->open(temporary.string(), spec) &&
-                             file->write_image(spec.format, pixels) && file->close();
-        if (!written) {
-            return fail(ErrorCode::FileUnwritable,
-                        fmt::format("{}: {}; check the folder's permissions and the space left",
-                                    path.string(),
-                                    oneLine(file ? file->geterror() : OIIO::geterror())));
-        }
-        return {};
-    });
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    const auto file = OIIO::ImageOutput::create(format);
+    const bool encoded = file && file->set_ioproxy(&memory) && file->open(path.string(), spec) &&
+                         file->write_image(spec.format, pixels) && file->close();
+    if (!encoded) {
+        return fail(
+            ErrorCode::FileUnwritable,
+            fmt::format("{}: cannot be encoded ({}); install OpenImageIO with support for {}",
+                        path.string(), oneLine(file ? file->geterror() : OIIO::geterror()),
+                        format));
+    }
+    return writeFileAtomically(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 } // namespace

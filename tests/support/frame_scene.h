@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <glm/glm.hpp>
@@ -131,6 +132,32 @@ inline glm::dvec2 randomFragCoord(Dice& dice, const FrameScene& scene) {
     return inside && dice.chance(0.8)
                ? seen
                : glm::dvec2(v.x + dice.uniform(0.0, v.width), v.y + dice.uniform(0.0, v.height));
+}
+
+/// Length of a pixel's ray inside the box and beyond the near plane, from the matrices alone, in extended precision.
+/// The box is grown by `growMm` on every side, or shrunk; the near plane moves likewise.
+inline double lengthInsideMm(const FrameScene& scene, glm::dvec2 fragCoord, double growMm = 0.0) {
+    using Real = long double;
+    using Vec3 = glm::vec<3, Real>;
+    using Vec4 = glm::vec<4, Real>;
+    const glm::mat<4, 4, Real> modelFromView = glm::inverse(glm::mat<4, 4, Real>(scene.view.viewFromModel));
+    const glm::mat<4, 4, Real> uvwFromModel(glm::inverse(glm::mat<4, 4, Real>(scene.geometry.modelFromUvw())));
+    const glm::dvec2 tangent = scene.tangentAt(fragCoord);
+    const Vec3 perDepthMm(modelFromView * Vec4(tangent.x, tangent.y, -1.0, 0.0));
+    const Vec3 eye(uvwFromModel * modelFromView * Vec4(0.0, 0.0, 0.0, 1.0));
+    const Vec3 perDepth = Vec3(uvwFromModel * Vec4(perDepthMm, 0.0));
+    const glm::mat<3, 3, Real> rows = glm::transpose(glm::mat<3, 3, Real>(uvwFromModel));
+    const Real viewUnitsPerMm = glm::length(glm::dvec3(scene.view.viewFromModel[0]));
+    Real begin = std::max(0.0L, scene.view.nearDepth - growMm * viewUnitsPerMm);
+    Real end = std::numeric_limits<Real>::infinity();
+    for (int k = 0; k < 3; ++k) {
+        const Real grow = growMm * glm::length(rows[k]);
+        const Real low = (-grow - eye[k]) / perDepth[k];
+        const Real high = (1.0L + grow - eye[k]) / perDepth[k];
+        begin = std::max(begin, std::min(low, high));
+        end = std::min(end, std::max(low, high));
+    }
+    return static_cast<double>(std::max(0.0L, end - begin) * glm::length(perDepthMm));
 }
 
 } // namespace slabcast::test

@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "tests/support/render_support.h"
+
+namespace slabcast::test {
+
+namespace {
+
+constexpr glm::ivec2 kSize(64, 48);
+
+/// Most of it empty, as volumes are: clusters of values in air, single spikes, thin plates or waves.
+Volume randomVolume(Random& random) {
+    const glm::ivec3 dims(random.oneOf({1, 2, 7, 16, 23, 33}), random.oneOf({1, 3, 8, 17, 32}),
+                          random.oneOf({1, 5, 12, 16, 29}));
+    const glm::dvec3 spacing = random.chance(0.5) ? glm::dvec3(1.0)
+                                                  : glm::dvec3(random.in(0.3, 3.0), random.in(0.3, 3.0),
+                                                               random.in(0.3, 3.0));
+    const VoxelType type = random.oneOf({VoxelType::U8, VoxelType::U16});
+    const double highest = type == VoxelType::U8 ? 255.0 : random.oneOf({4095.0, 65535.0});
+    const int kind = random.below(4);
+    const glm::dvec3 middle = glm::dvec3(random.in(0.0, 1.0), random.in(0.0, 1.0), random.in(0.0, 1.0)) * glm::dvec3(dims);
+    const double radius = random.in(1.0, 10.0);
+    const int plate = random.below(dims.z);
+    const auto formula = [&](glm::ivec3 v) {
+        switch (kind) {
+        case 0: // a ball with a soft rim and noise inside
+            return std::clamp(radius - glm::distance(glm::dvec3(v), middle), 0.0, 3.0) / 3.0 * random.in(0.5, 1.0) * highest;
+        case 1: // spikes
+            return random.chance(0.003) ? random.in(0.2, 1.0) * highest : 0.0;
+        case 2: // a plate
+            return v.z == plate ? random.in(0.0, 1.0) * highest : 0.0;
+        default:
+            return highest * 0.5 * (1.0 + std::sin(v.x * 0.21 + radius) * std::cos(v.y * 0.17 + v.z * 0.11));
+        }
+    };
+    Volume volume = makeVolume(dims, type, formula, spacing);
+    if (random.chance(0.3)) {
+        volume.geometry.direction = glm::dmat3(
+            glm::rotate(glm::dmat4(1.0), random.in(0.0, 6.0), glm::normalize(glm::dvec3(1.0, random.in(-1.0, 1.0), 0.3))));
+    }
+    return volume;
+}
+
+/// Narrow bands with steps, spikes a fraction of a value wide, ramps: all within [0, highest].
+TransferFunction randomTransfer(Random& random, double highest) {
+    TransferFunction tf{.name = "random", .opacityUnitMm = random.in(0.3, 3.0)};
+    const double strongest = random.oneOf({0.01, 0.5, 1.0});
+    double value = random.in(0.0, 0.5) * highest;
+    const auto add = [&](double at, double opacity) {
+        const glm::dvec3 color(random.in(0.0, 1.0), random.in(0.0, 1.0), random.in(0.0, 1.0));
+        tf.points.push_back({at, color, opacity});
+    };
+    const int bands = 1 + random.below(3);
+    for (int band = 0; band < bands; ++band) {
+        const double width = random.oneOf({0.0, 0.3, 0.02 * highest, 0.2 * highest});
+        const double opacity = random.in(0.0, strongest);
+        add(value, 0.0);
+        if (width > 0.0 && random.chance(0.5)) {
+            add(value, opacity);
+            add(value + width, opacity);
+            add(value + width, 0.0);
+        } else {
+            add(value + std::max(width, 0.1), opacity);
+            add(value + 2.0 * std::max(width, 0.1), 0.0);
+        }
+        value = tf.points.back().value + random.in(0.01, 0.3) * highest;
+    }
+    return tf;
+}
+
+View randomView(Random& random, const Scene& scene) {
+    const OrbitCamera camera{random.in(0.0, 360.0), random.in(-90.0, 90.0),
+                             random.oneOf({0.3, 1.1, 2.0, 3.0, 12.0})};
+    View view = orbitView(scene, camera, random.oneOf({20.0, 50.0, 90.0}), kSize);
+    const double shift = random.chance(0.5) ? random.in(-0.3, 0.3) : 0.0;
+    view.frustum.left += shift;
+    view.frustum.right += shift;
+    if (random.chance(0.3)) {
+        view.nearDepth = random.in(0.0, camera.distanceRadii) * scene.geometry().boundingSphere().radiusMm;
+    }
+    return view;
+}
+
+Settings randomSettings(Random& random) {
+    Settings settings;
+    settings.form = random.oneOf({SegmentForm::Unrolled, SegmentForm::Loop});
+    settings.layersPerPlane = random.oneOf({1, 8, 16});
+    if (settings.form == SegmentForm::Loop && random.chance(0.3)) {
+        settings.layersPerPlane = kMaxOutlines * 1024;
+    }
+    settings.layerSpacingVoxels = random.oneOf({0.125, 0.5, 1.0, 4.0});
+    settings.lattice = random.oneOf({LatticeKind::Planar, LatticeKind::Shells});
+    settings.target = random.oneOf({TargetFormat::Rgba8, TargetFormat::Rgba16f});
+    if (random.chance(0.5)) {
+        settings.termination.reset();
+    }
+    return settings;
+}
+
+class SkipEqualityTest : public RenderTest {
+protected:
+    /// Draws one random scene in all four ways; returns whether anything was to be seen.
+    bool drawAllWays(std::uint64_t seed, bool exact, Classification classification, bool shaded) {
+        Random random(seed);
+        const Volume volume = randomVolume(random);
+        const double highest = volume.type == VoxelType::U8 ? 255.0 : 4095.0;
+        Look look{.tf = randomTransfer(random, highest), .classification = classification};
+        if (shaded) {
+            look.shading = ShadingParameters{};
+        }
+        const Scene scene = makeScene(volume, look, {.blockEdgeVoxels = random.oneOf({1, 2, 4, 8})}, exact);
+        Settings settings = randomSettings(random);
+        settings.classification = classification;
+        settings.shaded = shaded;
+        const View view = randomView(random, scene);
+        Picture plain;
+        for (const bool tighten : {false, true}) {
+            for (const SkipStructure skip : {SkipStructure::None, SkipStructure::Proximity}) {
+                settings.tighten = tighten;
+                settings.skip = skip;
+                const FramePlan plan = decide(scene, settings);
+                const Picture picture = draw(scene, plan, view, kSize);
+                if (plain.pixels.empty()) {
+                    plain = picture;
+                }
+                EXPECT_EQ(differingPixels(plain, picture), 0)
+                    << "seed " << seed << ", " << name(plan.variant) << (tighten ? ", tight, " : ", ")
+                    << name(plan.lattice.kind) << ", " << plan.planes << "x" << plan.layersPerPlane << ", "
+                    << name(plan.target) << ", off by " << largestDifference(plain, picture);
+            }
+        }
+        return std::any_of(plain.pixels.begin(), plain.pixels.end(), [](glm::vec4 p) { return p.a > 0.0F; });
+    }
+
+    void drawScenes(std::uint64_t firstSeed, int count, bool exact, Classification classification, bool shaded) {
+        int seen = 0;
+        for (int k = 0; k < count; ++k) {
+            seen += drawAllWays(firstSeed + static_cast<std::uint64_t>(k), exact, classification, shaded);
+        }
+        EXPECT_GE(seen, count / 3) << "too many of the scenes were empty to prove anything";
+    }
+};
+
+} // namespace
+
+TEST_F(SkipEqualityTest, PostClassified) { drawScenes(1000, 40, false, Classification::Post, false); }
+TEST_F(SkipEqualityTest, PostClassifiedExactField) { drawScenes(2000, 25, true, Classification::Post, false); }
+TEST_F(SkipEqualityTest, PreClassified) { drawScenes(3000, 30, false, Classification::Pre, false); }
+TEST_F(SkipEqualityTest, PreClassifiedLit) { drawScenes(4000, 10, false, Classification::Pre, true); }
+TEST_F(SkipEqualityTest, Shaded) { drawScenes(5000, 20, false, Classification::Post, true); }
+TEST_F(SkipEqualityTest, ShadedExactField) { drawScenes(6000, 10, true, Classification::Post, true); }
+
+} // namespace slabcast::test

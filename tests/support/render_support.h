@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "core/frame/renderer.h"
+#include "core/gl/color_targets.h"
+#include "core/volume/texel_format.h"
+#include "tests/support/gl_fixture.h"
+
+namespace slabcast::test {
+
+/// Seeded by hand and the same on every machine.
+class Random {
+public:
+    explicit Random(std::uint64_t seed) : engine_(seed) {}
+    double in(double low, double high) { return low + (high - low) * std::ldexp(double(engine_() >> 11), -53); }
+    int below(int count) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(count)); }
+    bool chance(double share) { return in(0.0, 1.0) < share; }
+    template <class T>
+    T oneOf(std::initializer_list<T> values) {
+        return values.begin()[below(static_cast<int>(values.size()))];
+    }
+
+private:
+    std::mt19937_64 engine_;
+};
+
+using VoxelFormula = std::function<double(glm::ivec3)>;
+
+/// Voxels from a formula; U8 or U16, one mm each where no spacing is given.
+Volume makeVolume(glm::ivec3 dims, VoxelType type, const VoxelFormula& formula, glm::dvec3 spacingMm = glm::dvec3(1.0));
+Volume constantVolume(glm::ivec3 dims, int value);
+/// A few long waves: neighbours differ by a few steps in a hundred, so that a filter's error stays small.
+Volume wavyVolume(Random& random, glm::ivec3 dims, VoxelType type, glm::dvec3 spacingMm = glm::dvec3(1.0));
+
+/// One material, whatever the value: an extinction and a colour.
+TransferFunction uniformTransfer(double extinctionPerMm, glm::dvec3 color);
+/// Five points of random colour and opacity over [0, highest].
+TransferFunction smoothTransfer(Random& random, double highest, double mostOpacity);
+
+struct Picture {
+    glm::ivec2 size{0};
+    std::vector<glm::vec4> pixels; // rows from the bottom up
+
+    glm::dvec4 at(glm::ivec2 p) const { return glm::dvec4(pixels[static_cast<std::size_t>(p.y) * size.x + p.x]); }
+    Picture part(const Viewport& viewport) const;
+};
+
+/// Pixels of which any bit differs.
+int differingPixels(const Picture& a, const Picture& b);
+/// Largest difference of any component.
+double largestDifference(const Picture& a, const Picture& b);
+
+View orbitView(const Scene& scene, const OrbitCamera& camera, double fovDegrees, glm::ivec2 size);
+
+/// The orthogonal ways to deal layers out: slicing, hybrids and casting, unrolled and in loops.
+Settings segments(int layersPerPlane, SegmentForm form);
+
+/// One renderer for all tests of the process, so that a shader is compiled once.
+class RenderTest : public GlTest {
+protected:
+    Renderer& renderer();
+    const std::vector<TexelFormatTest>& formats();
+
+    Scene makeScene(const Volume& volume, const Look& look, const SkipOptions& skip = {}, bool exact = false);
+    FramePlan decide(const Scene& scene, const Settings& settings);
+    /// Prepares and draws into a target of the plan's format.
+    Picture draw(const Scene& scene, const FramePlan& plan, const View& view, glm::ivec2 size,
+                 glm::vec4 background = glm::vec4(0.0F));
+    Picture draw(const Scene& scene, const Settings& settings, const View& view, glm::ivec2 size);
+};
+
+/// A pixel in float64 and what a device may differ by, from the definitions alone.
+struct PixelReference {
+    glm::dvec4 color{0.0}; // premultiplied
+    double bound = 0.0;    // classification and arithmetic; blending comes on top
+    bool atEdge = false;   // the ray grazes the box: whether it meets it is a matter of rounding
+};
+
+/// Walks one ray front to back over the plan's lattice. Beside the sum it carries a bound: a layer whose premultiplied
+/// colour may be off by p and whose opacity by a moves the pixel by at most T (p + a), T being the largest
+/// transmittance in front of it. p and a are the spread of the classification over what the field, the table and the
+/// length may be: the exact ones, give or take the texture unit's filter (1/256 of the cell's range per axis and one
+/// step of the format), float32 positions (2^-22 of the terms that they are summed from) and the table's own weights.
+class ReferencePicture {
+public:
+    ReferencePicture(const Scene& scene, const FramePlan& plan, const View& view, const Viewport& viewport);
+    PixelReference at(glm::dvec2 fragCoord) const;
+
+private:
+    struct Ray;
+    struct Layer;
+    struct Field {
+        double value, error;
+    };
+    Ray rayOf(glm::dvec2 fragCoord) const;
+    Field fieldAt(glm::dvec3 uvw, glm::dvec3 uvwError) const;
+    Layer postClassified(glm::dvec3 uvw, const Ray& ray, glm::dvec3 lengths) const;
+    Layer preClassified(glm::dvec3 uvw, const Ray& ray, glm::dvec3 lengths) const;
+    void shade(glm::dvec3& color, double& error, glm::dvec3 uvw, const Ray& ray) const;
+
+    const Scene& scene_;
+    FramePlan plan_;
+    RayFrame frame_;
+    std::vector<double> values_; // of all voxels
+};
+
+/// Every pixel within its bound and the blending's; at most 0.5 % of the pixels may graze the box. `meanLimit` caps
+/// the mean difference: a bound must hold in the worst case, and most pixels are far from it.
+void expectMatchesReference(const Picture& picture, const Scene& scene, const FramePlan& plan, const View& view,
+                            double meanLimit);
+
+/// What blending may add: every plane rounds once more, by half a step of 1/255 or, in fp16, by a unit of 2^-11.
+double blendingBound(const FramePlan& plan);
+
+} // namespace slabcast::test
