@@ -138,11 +138,10 @@ TEST(TightStack, EveryOccupiedSampleLiesOnItsPlane) {
                     const Outline outline = outlineOf(stack, layer / d.layersPerPlane);
                     const bool covered = !outline.empty() && inRectangle(outline, tangent);
                     ++(covered ? tally.covered : tally.bare);
-                    EXPECT_TRUE(covered) << "planes " << planes << ", view " << view << ", layer " << layer
-                        << " kind " << int(d.scene.lattice.kind) << " near " << d.scene.view.nearDepth << " sp " << d.scene.frame().spacing << " dist " << d.scene.frame().sphereDistance << " rad " << d.scene.frame().radius<< " depth " << d.scene.frame().sphereCentre.z << " total " << total << " drawn " << !outline.empty() << " w " << layerWeight(ray,total,layer);
+                    EXPECT_TRUE(covered) << "planes " << planes << ", view " << view << ", layer " << layer;
                 }
             });
-            if (tally.bare > 10) {
+            if (tally.bare > 0) {
                 return;
             }
         }

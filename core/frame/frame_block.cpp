@@ -14,15 +14,14 @@ glm::vec4 decodeWeights(TexelFormat format) {
                                            : glm::vec4(1.0F, 0.0F, 0.0F, 0.0F);
 }
 
-/// Table coordinate (of texel centres) = sampled * x + y.
+/// Table texel = sampled * x + y.
 glm::dvec2 tableMap(const Texels& texels, const TransferTable& table) {
-    const double size = static_cast<double>(table.texels.size());
     const double span = table.lastValue - table.firstValue;
-    if (size < 2.0 || span <= 0.0) {
-        return {0.0, 0.5};
+    if (span <= 0.0) {
+        return {0.0, 0.0};
     }
-    const double perValue = (size - 1.0) / (span * size);
-    return {texels.valueScale * perValue, (texels.valueBias - table.firstValue) * perValue + 0.5 / size};
+    const double texelsPerValue = (static_cast<double>(table.texels.size()) - 1.0) / span;
+    return {texels.valueScale * texelsPerValue, (texels.valueBias - table.firstValue) * texelsPerValue};
 }
 
 void fillSkip(FrameBlock& block, const ProximityCloud& cloud, glm::ivec3 dims) {
@@ -62,7 +61,9 @@ FrameBlock makeFrameBlock(const RayFrame& f, const Frustum& frustum, const Scene
     block.viewport = glm::vec4(glm::dvec4(f.viewportCentre, shells ? 1.0 : 0.0, plan.terminationAlpha));
     const glm::dvec2 map = tableMap(scene.texels(), scene.table());
     const ClassifiedTexels* classified = scene.classified();
-    block.tableMap = packed(glm::dvec3(map, classified != nullptr ? 1.0 / classified->referenceLengthMm : 0.0), 0.0);
+    block.tableMap =
+        packed(glm::dvec3(map, classified != nullptr ? 1.0 / classified->referenceLengthMm : 0.0),
+               static_cast<double>(scene.table().texels.size()) - 1.0);
     block.decode = decodeWeights(scene.texels().format);
     if (scene.cloud() != nullptr) {
         fillSkip(block, *scene.cloud(), scene.geometry().dims);

@@ -74,6 +74,10 @@ struct Planner {
         because("layers " + std::to_string(total),
                 "one every " + number(spacing) + " mm (" + number(spacing / facts.smallestVoxelEdgeMm) +
                     " voxels) over the bounding sphere's diameter of " + number(2.0 * facts.sphere.radiusMm) + " mm");
+        because(std::string(name(settings.lattice)) + " lattice",
+                settings.lattice == LatticeKind::Planar
+                    ? "layers of equal view depth, as in the core paper"
+                    : "layers of equal distance from the eye: of one length at any field of view");
     }
 
     SegmentForm formFor(int layersPerPlane) const {
@@ -100,8 +104,11 @@ struct Planner {
             for (const RatioMeasurement& m : measurements) {
                 all += (all.empty() ? "" : ", ") + name(m.ratio) + " " + number(m.frameMs) + " ms";
             }
-            because("ratio " + name(best->ratio), "fastest of those measured on this device: " + all);
-            return best->ratio;
+            // Dealt out anew: what was measured may have been of another number of layers.
+            const int layersPerPlane = std::min(best->ratio.layersPerPlane, total);
+            const Ratio ratio{planesFor(total, layersPerPlane), layersPerPlane, best->ratio.form};
+            because("ratio " + name(ratio), "fastest of those measured on this device: " + all);
+            return ratio;
         }
         const int layersPerPlane = std::min(kUnmeasuredLayersPerPlane, total);
         const Ratio ratio{planesFor(total, layersPerPlane), layersPerPlane, formFor(layersPerPlane)};
@@ -147,6 +154,10 @@ struct Planner {
         if (settings.space == CompositingSpace::Linear && settings.target == TargetFormat::Rgba8) {
             plan.target = TargetFormat::Rgba16f;
             because("target rgba16f", "linear light in 8 bits would band in the shadows");
+        } else {
+            because(std::string("target ") + name(plan.target),
+                    plan.target == TargetFormat::Rgba8 ? "blended in 8 bits, the cheapest on a mobile GPU"
+                                                       : "keeps what 8 bits would round away at every plane");
         }
         const double least =
             1.0 - std::exp(-facts.minPositiveExtinctionPerMm * plan.lattice.spacingMm * plan.layersPerPlane);
@@ -217,6 +228,9 @@ Result<FramePlan> plan(const SceneFacts& facts, const Settings& settings, const 
                     !settings.shaded                                    ? "no shading: no gradients are fetched"
                     : settings.classification == Classification::Post ? "shaded per sample"
                                                                         : "shading is baked into the texels");
+    if (result.variant.exactField) {
+        planner.because("exact field", "the volume's texels are fetched and interpolated in float32, not filtered");
+    }
     planner.chooseSkip();
     planner.chooseTermination();
     result.tighten = settings.tighten;

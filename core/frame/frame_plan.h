@@ -32,8 +32,8 @@ struct Settings {
     TargetFormat target = TargetFormat::Rgba8;
     CompositingSpace space = CompositingSpace::Display;
     bool shaded = false;
-    /// Opacity at which a segment is left. An eighth of an 8-bit step is lost at most per segment.
-    std::optional<double> termination = 1.0 - 1.0 / 2048.0;
+    /// Opacity at which a segment is left: what is lost behind it is at most one 8-bit step.
+    std::optional<double> termination = 1.0 - 1.0 / 256.0;
 };
 
 /// What a plan needs to know of the volume under its transfer function.

@@ -64,7 +64,10 @@ std::optional<std::optional<double>> parseTermination(const std::string& word) {
         return std::optional<double>();
     }
     const auto opacity = parseReal(word);
-    return opacity && *opacity > 0.0 && *opacity <= 1.0 ? std::optional(opacity) : std::nullopt;
+    if (!opacity || !(*opacity > 0.0 && *opacity <= 1.0)) {
+        return std::nullopt;
+    }
+    return opacity;
 }
 
 std::optional<std::vector<int>> parseCounts(const std::string& word) {

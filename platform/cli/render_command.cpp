@@ -41,9 +41,8 @@ Result<bool> checkOutputs(const RenderOptions& options) {
         if (const Result<void> sound = checkWritable(options.statsFile); !sound) {
             return tl::unexpected(sound.error());
         }
-        std::error_code error;
-        const auto picture = std::filesystem::weakly_canonical(options.output, error);
-        if (std::filesystem::weakly_canonical(options.statsFile, error) == picture) {
+        if (std::filesystem::absolute(options.statsFile).lexically_normal() ==
+            std::filesystem::absolute(options.output).lexically_normal()) {
             return fail(ErrorCode::InvalidArgument,
                         options.output + ": is named for both picture and statistics; give --stats another name");
         }

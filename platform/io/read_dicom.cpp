@@ -23,9 +23,10 @@ const char* const kModality = "0008|0060";
 const char* const kBitsAllocated = "0028|0100";
 
 /// What matters is in the error that is returned.
-void silenceGdcm() {
+void silenceLibraries() {
     gdcm::Trace::WarningOff();
     gdcm::Trace::ErrorOff();
+    itk::Object::GlobalWarningDisplayOff();
 }
 
 std::string tagOf(itk::GDCMImageIO& io, const char* tag) {
@@ -82,7 +83,7 @@ Result<void> readPixels(const std::filesystem::path& path, itk::GDCMImageIO& io,
 }
 
 Result<Volume> openDicom(const std::filesystem::path& path, itk::GDCMImageIO& io) {
-    silenceGdcm();
+    silenceLibraries();
     return openWithItk(path, io);
 }
 
@@ -109,7 +110,7 @@ std::string listOfSeries(itk::GDCMSeriesFileNames& names, const std::vector<std:
 /// The files of the series asked for, or of the only one.
 Result<std::vector<std::string>> filesOfSeries(const std::filesystem::path& folder,
                                                const std::string& series) try {
-    silenceGdcm();
+    silenceLibraries();
     const auto names = itk::GDCMSeriesFileNames::New();
     names->SetUseSeriesDetails(false); // a series is what shares a UID, nothing finer
     names->SetInputDirectory(folder.string());

@@ -43,8 +43,8 @@ Volume constantVolume(glm::ivec3 dims, int value) {
 
 Volume wavyVolume(Random& random, glm::ivec3 dims, VoxelType type, glm::dvec3 spacingMm) {
     const double half = type == VoxelType::U8 ? 127.0 : 32767.0;
-    const glm::dvec3 phase(random.in(0.0, 6.3), random.in(0.0, 6.3), random.in(0.0, 6.3));
-    const glm::dvec3 pace(random.in(0.05, 0.2), random.in(0.05, 0.2), random.in(0.05, 0.2));
+    const glm::dvec3 phase{random.in(0.0, 6.3), random.in(0.0, 6.3), random.in(0.0, 6.3)};
+    const glm::dvec3 pace{random.in(0.05, 0.2), random.in(0.05, 0.2), random.in(0.05, 0.2)};
     return makeVolume(
         dims, type,
         [=](glm::ivec3 v) {
@@ -61,7 +61,7 @@ TransferFunction uniformTransfer(double extinctionPerMm, glm::dvec3 color) {
 TransferFunction smoothTransfer(Random& random, double highest, double mostOpacity) {
     TransferFunction tf{.name = "smooth"};
     for (int k = 0; k < 5; ++k) {
-        const glm::dvec3 color(random.in(0.0, 1.0), random.in(0.0, 1.0), random.in(0.0, 1.0));
+        const glm::dvec3 color{random.in(0.0, 1.0), random.in(0.0, 1.0), random.in(0.0, 1.0)};
         tf.points.push_back({std::round(highest * k / 4.0), color, random.in(0.0, mostOpacity)});
     }
     return tf;

@@ -110,12 +110,13 @@ private:
     std::vector<double> values_; // of all voxels
 };
 
-/// Every pixel within its bound and the blending's; at most 0.5 % of the pixels may graze the box. `meanLimit` caps
-/// the mean difference: a bound must hold in the worst case, and most pixels are far from it.
+/// Every pixel within its bound and the blending's; at most 0.5 % of the pixels may graze the box. The mean
+/// difference may be `meanLimit` and half of the blending's bound: cutting digits off errs by half a step on average.
 void expectMatchesReference(const Picture& picture, const Scene& scene, const FramePlan& plan, const View& view,
                             double meanLimit);
 
-/// What blending may add: every plane rounds once more, by half a step of 1/255 or, in fp16, by a unit of 2^-11.
+/// What blending may add: every plane rounds once more. 8 bits round to the nearest step, half of 1/255; fp16's steps
+/// are 2^-11 at most below 1, and GL lets a device take either neighbour.
 double blendingBound(const FramePlan& plan);
 
 } // namespace slabcast::test

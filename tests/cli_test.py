@@ -1,0 +1,496 @@
+#!/usr/bin/env python3
+"""The command line as a process: its exit status, what it says, and which files it leaves.
+
+usage: cli_test.py SLABCAST [arguments of unittest]
+"""
+
+import csv
+import json
+import os
+import re
+import resource
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent / "support"))
+import cli_files as files  # noqa: E402
+
+SLABCAST = None  # the program, from the command line
+REPORT = Path(__file__).resolve().parent.parent / "perf" / "report.py"
+PHANTOM = "phantom:shells:24"
+QUICK = ("--size", "32x32", "--layers", "16", "--planes", "4")  # a given ratio is not measured
+COMMANDS = ("render", "sweep", "info", "device")
+POINT = {"value": 0, "color": [1, 1, 1], "opacity": 0.5}
+
+
+class CliTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="slabcast_cli_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def write(self, name, content):
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content.encode() if isinstance(content, str) else content)
+        return name
+
+    def run_cli(self, *arguments, env=None, **options):
+        return subprocess.run([SLABCAST, *map(str, arguments)], cwd=self.folder, env={**os.environ, **(env or {})},
+                              capture_output=True, text=True, timeout=120, **options)
+
+    def kept(self):
+        """Every file of the folder and what is in it."""
+        return {path.relative_to(self.folder): path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}
+
+    def assert_one_line(self, run, status):
+        self.assertEqual(run.returncode, status, run.stderr)
+        self.assertEqual(run.stdout, "")
+        self.assertRegex(run.stderr, r"\Aslabcast[^\n]*: [^\n]+\n\Z")
+
+    def succeeds(self, *arguments, notes="", **options):
+        run = self.run_cli(*arguments, **options)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertRegex(run.stderr, rf"\A{notes}\Z")
+        return run.stdout
+
+    def fails(self, *arguments, cause, remedy, **options):
+        """Exit status 1, one line with cause and remedy, and every file as it was."""
+        before = self.kept()
+        run = self.run_cli(*arguments, **options)
+        self.assert_one_line(run, 1)
+        self.assertRegex(run.stderr, cause)
+        self.assertRegex(run.stderr, remedy)
+        self.assertEqual(self.kept(), before)
+        return run.stderr
+
+    def render_fails(self, *arguments, **options):
+        """fails(), of a render that would replace a picture and statistics."""
+        self.write("out.png", "a picture")
+        self.write("out.json", "statistics")
+        return self.fails("render", "-o", "out.png", "--stats", "out.json", *QUICK, *arguments, **options)
+
+    def misused(self, *arguments, cause):
+        """Exit status 2, one line with the cause and where to read on, and no file."""
+        run = self.run_cli(*arguments)
+        self.assert_one_line(run, 2)
+        self.assertRegex(run.stderr, cause)
+        self.assertRegex(run.stderr, r"'slabcast.* --help'")
+        self.assertEqual(self.kept(), {})
+
+    def picture(self, *arguments, **options):
+        """The PNG file's bytes."""
+        self.succeeds("render", "-o", "p.png", *arguments, **options)
+        return (self.folder / "p.png").read_bytes()
+
+    def stats(self, *arguments):
+        self.picture("--stats", "s.json", *arguments)
+        return json.loads((self.folder / "s.json").read_text())
+
+
+class BadVolumes(CliTest):
+    def test_volumes_that_lie_or_are_cut_short(self):
+        gz, nii, half = files.packed(files.ramp()), files.nifti(), len(files.ramp()) // 2
+        again = "fetch the file again|correct the"
+        cases = {
+            "cut.nrrd": (files.nrrd(data=files.ramp()[:half]), "512 bytes", again),
+            "cut_gz.nrrd": (files.nrrd(encoding="gzip", data=gz[:-12]), "end early or are damaged", again),
+            "cut.nii.gz": (files.packed(nii)[:-20], "end early or are damaged|cannot be read", again),
+            "cut.nii": (files.nifti()[:500], "512 bytes", again),
+            "header_only.nii": (files.nifti()[:200], "header", "again|check|export"),
+            "lies.nrrd": (files.nrrd("800 800 800"), "512000000 bytes", again),
+            "type.nrrd": (files.nrrd(kind="quaternion"), "type 'quaternion'", "convert"),
+            "type.nii": (files.nifti(kind=32, bits=64), "type", "convert"),
+            "zero.nrrd": (files.nrrd("8 0 8"), "dimension of 0", "export"),
+            "four.nrrd": (files.nrrd("8 8 4 2", spacings="1 1 1 1"), "4 dimensions", "extract"),
+            "two.nrrd": (files.nrrd("8 64", spacings="1 1"), "2 dimensions", "stack"),
+            "four.nii": (files.nifti((8, 8, 4, 2)), "4 dimensions", "extract"),
+            "spacing_0.nrrd": (files.nrrd(spacings="1 0 1"), "spacing of axis 1 is 0", "correct the header"),
+            "spacing_nan.nrrd": (files.nrrd(spacings="1 1 nan"), "spacing of axis 2 is nan", "correct the header"),
+            "spacing_nan.nii": (files.nifti(spacings=(1, float("nan"), 1)), "spacing", "correct the header"),
+            "huge.nrrd": (files.nrrd("2000000 2000000 2000000"), "2000000", "small|crop|correct|downsample"),
+            "huger.nrrd": (files.nrrd("9" * 30 + " 2 2"), "9223372036854775807|9999", "small|crop|correct|downsample"),
+            "noise.nrrd": (b"\x07\x13" * 300, "NRRD", "check|export|again"),
+            "empty.nii.gz": (b"", "NIfTI|empty|header", "check|export|again"),
+            "noise.tif": (b"\x07\x13" * 300, "noise.tif", "check|export|again|convert"),
+            "letter.txt": ("Dear reader", "no known format", r"--raw"),
+        }
+        for name, (content, cause, remedy) in cases.items():
+            with self.subTest(name):
+                self.write(name, content)
+                line = self.render_fails(name, cause=cause, remedy=remedy)
+                self.assertIn(name, line)
+
+    def test_layouts_of_plain_voxels(self):
+        self.write("v.raw", files.ramp()[:100])
+        for layout, cause, remedy in (
+                ("8x8x8,uint8,1x1x1", "512.*100", "layout|DIMS|--raw|again"),
+                ("4x4x4,uint8,1x1x1", "64.*100|100.*64", "layout|DIMS|--raw|again"),
+                ("8x8x8", "'8x8x8'", "256x256x128"),
+                ("8x8,uint8,1x1x1", "8x8", "three|256x256x128|stack"),
+                ("8x0x8,uint8,1x1x1", "0", "at least|positive|1"),
+                ("8x8x8,uint12,1x1x1", "uint12", "uint8"),
+                ("8x8x8,uint8,1x0x1", "spacing", "correct|positive|above"),
+                ("8x8x8,uint8,1xnanx1", "spacing|nan", "correct|positive|above|number"),
+                ("2000000x2000000x2000000,uint8,1x1x1", "2000000", "small|crop|correct|downsample"),
+        ):
+            with self.subTest(layout):
+                self.render_fails("v.raw", "--raw", layout, cause=cause, remedy=remedy)
+
+    def test_places_without_a_volume(self):
+        (self.folder / "empty").mkdir()
+        self.write("letters/a.txt", "Dear reader")
+        self.write("v.nrrd", files.nrrd())
+        for place, cause, remedy in (("missing.nrrd", "no such file", "check the path"),
+                                     ("v.nrrd/below.nrrd", "no such file", "check the path"),
+                                     ("empty", "holds no files", "name a folder"),
+                                     ("letters", "DICOM|slices", "name|check")):
+            with self.subTest(place):
+                self.render_fails(place, cause=f"{place}.*({cause})", remedy=remedy)
+
+    def test_one_of_two_dicom_series_is_to_be_named(self):
+        for series in ("1.2.3.7", "1.2.3.8"):
+            for z in range(3):
+                self.write(f"head/{series}_{z}.dcm", files.dicom(series, z))
+        line = self.render_fails("head", cause="2 series|two|several", remedy="--series")
+        self.assertIn("1.2.3.7", line)
+        self.assertIn("1.2.3.8", line)
+        self.assertRegex(self.succeeds("info", "head", "--series", "1.2.3.8"), "8 x 8 x 3, int16")
+        self.render_fails("head", "--series", "1.2.3.9", cause="1.2.3.9", remedy="1.2.3.7")
+
+    def test_phantoms_that_cannot_be(self):
+        for name, cause, remedy in (("phantom:nosuch", "'nosuch'", "marschner-lobb"),
+                                    ("phantom:", "''", "marschner-lobb"),
+                                    ("phantom:shells:0", "0", "at least one"),
+                                    ("phantom:shells:-3", "'-3'", "give"),
+                                    ("phantom:shells:2x2", "'2x2'", "give"),
+                                    ("phantom:shells:many", "'many'", "give"),
+                                    ("phantom:ramp:100000", "100000", "ask for|1024")):
+            with self.subTest(name):
+                self.render_fails(name, cause=cause, remedy=remedy)
+
+    def test_without_memory_for_the_voxels(self):
+        def gibibyte():
+            resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
+        self.fails("info", "phantom:ramp:1024", cause="memory|bad_alloc", remedy="--downsample|smaller", preexec_fn=gibibyte)
+
+
+class BadTransferFunctions(CliTest):
+    def test_files_that_are_refused(self):
+        def tf(*points, **more):
+            return json.dumps({"points": [{**POINT, **point} for point in points], **more})
+        cases = {
+            "unsorted": (tf({"value": 2}, {"value": 1}), r"points\[1\]\.value", "sort"),
+            "opacity": (tf({}, {"value": 1, "opacity": 1.5}), r"points\[1\]\.opacity.*1\.5", r"0\.\.1|0 to 1"),
+            "negative": (tf({"opacity": -0.1}), r"points\[0\]\.opacity.*-0\.1", r"0\.\.1|0 to 1"),
+            "colour": (tf({"color": [0, 1.4, 0]}), r"points\[0\]\.color\[1\].*1\.4", r"0\.\.1|0 to 1"),
+            "grey": (tf({"color": [0.5]}), r"points\[0\]\.color", "three|3"),
+            "text": (tf({"value": "air"}), r"points\[0\]\.value", "number"),
+            "unknown": (tf({}, gamma=2), "gamma", "known|remove|leave|name"),
+            "unknown_below": (tf({"alpha": 0.5}), r"points\[0\].*alpha", "known|remove|leave|opacity"),
+            "unit": (tf({}, opacityUnitMm=0), "opacityUnitMm", "above|positive|greater"),
+            "empty": (tf(), "points", "at least|one"),
+            "list": ("[]", "object|points", "points|object|write"),
+            "malformed": ('{"points": [{"value": 2,', "line 1", "correct the JSON"),
+            "nan": ('{"points": [{"value": NaN}]}', "line 1", "correct the JSON"),
+        }
+        for name, (text, cause, remedy) in cases.items():
+            with self.subTest(name):
+                self.write(name + ".json", text)
+                self.render_fails(PHANTOM, "--tf", name + ".json", cause=f"{name}.json.*({cause})", remedy=remedy)
+
+    def test_names_that_lead_nowhere(self):
+        (self.folder / "folder.json").mkdir()
+        self.render_fails(PHANTOM, "--tf", "gold", cause="'gold'", remedy="ct-bone.*json")
+        self.render_fails(PHANTOM, "--tf", "gold.json", cause="gold.json", remedy="check the path")
+        self.render_fails(PHANTOM, "--tf", "folder.json", cause="folder.json", remedy="check|name")
+
+
+class BadOutputs(CliTest):
+    def test_places_that_take_no_file(self):
+        self.write("file", "kept")
+        (self.folder / "folder.png").mkdir()
+        (self.folder / "full.png").symlink_to("/dev/full")
+        for flag, other, name, cause, remedy in (
+                ("-o", "--stats", "no/such/p.png", "no folder no/such", "make it"),
+                ("-o", "--stats", "file/p.png", "no folder file", "make it"),
+                ("-o", "--stats", "folder.png", "not a file", "name a file"),
+                ("-o", "--stats", "full.png", "not a file", "name a file"),
+                ("-o", "--stats", "p.jpg", "png or .exr", "name that ends"),
+                ("-o", "--stats", "p", "png or .exr", "name that ends"),
+                ("--stats", "-o", "no/s.json", "no folder no", "make it"),
+                ("--stats", "-o", "folder.png", "not a file", "name a file"),
+                ("--stats", "-o", "./good.png", "both", "another name")):
+            with self.subTest(f"{flag} {name}"):
+                self.fails("render", PHANTOM, *QUICK, flag, name, other, "good.png", cause=f"{name}.*{cause}", remedy=remedy)
+
+    def test_disk_that_fills_up_while_writing(self):
+        """A limit on file sizes stands in for it. Python ignores SIGXFSZ, and so does its child then: writing fails."""
+        def kibibyte():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1024, 1024))
+        noisy = ("render", "phantom:vessels:32", "--size", "200x200", "--layers", "16", "--planes", "4")
+        for name in ("p.png", "p.exr"):
+            for old in (None, "an older picture"):
+                with self.subTest(f"{name} over {old}"):
+                    if old:
+                        self.write(name, old)
+                    self.fails(*noisy, "-o", name, cause=f"{name}.*(too large|write)", remedy="space left",
+                               preexec_fn=kibibyte, restore_signals=False, env={"MESA_SHADER_CACHE_DISABLE": "true"})
+
+
+class BadDevices(CliTest):
+    def test_devices_that_cannot_draw(self):
+        driver = self.succeeds("device")
+        if "Mesa" not in driver:
+            self.skipTest("only Mesa can be told to be less than it is")
+        for env in ({"GALLIUM_DRIVER": "softpipe", "LIBGL_ALWAYS_SOFTWARE": "1"},  # has GLES 3.1
+                    {"MESA_GLES_VERSION_OVERRIDE": "3.1"},
+                    {"LIBGL_DRIVERS_PATH": "/nonexistent", "GBM_BACKENDS_PATH": "/nonexistent"},
+                    {"__EGL_VENDOR_LIBRARY_DIRS": "/nonexistent"}):
+            with self.subTest(env):
+                self.render_fails(PHANTOM, env=env, cause="no GLES 3.2 context", remedy="install .*GLES 3.2")
+        self.fails("device", env={"MESA_GLES_VERSION_OVERRIDE": "3.1"}, cause="no GLES 3.2 context", remedy="install")
+
+    def test_budget_names_the_downsampling_that_fits(self):
+        """A cube of 48 has 110592 voxels of a byte, a third of the edge 4096, and half of it 13824."""
+        budget = ("phantom:shells:48", "--gpu-budget", "0.01")  # 10485 bytes
+        line = self.render_fails(*budget, cause="110592 bytes.*10485", remedy=r"--downsample \d+")
+        fitting = int(re.search(r"--downsample (\d+)", line).group(1))
+        self.assertEqual(fitting, 3)
+        self.render_fails(*budget, "--downsample", fitting - 1, cause="13824 bytes", remedy="--downsample")
+        self.assertEqual(self.stats(*budget, *QUICK, "--downsample", fitting)["volume"]["dims"], [16, 16, 16])
+
+
+class BadUsage(CliTest):
+    def test_values_that_options_do_not_take(self):
+        bad = {
+            "--size": ("32", "0x5", "32x", "32x32x32", "axb", "99999x2", "-4x4", "1e2x4"),
+            "--planes": ("0", "-1", "many", "1.5", "99999999999999999999"),
+            "--layers": ("0", "x"),
+            "--frames": ("0", "2.5"),
+            "--camera": ("1,2", "1,2,3,4", "nan,2,3", "1,2,inf", "1,2,-1", "north"),
+            "--fov": ("0", "180", "nan"),
+            "--stereo": ("-1", "nan", "wide"),
+            "--background": ("red", "12345", "0x1234", "+12345"),
+            "--layer-spacing": ("0", "-1", "nan", "inf", "1e-9"),
+            "--termination": ("0", "2", "nan", "never"),
+            "--skip": ("octopus", ""), "--skip-block": ("3",), "--lattice": ("cubic",), "--form": ("long",),
+            "--tighten": ("yes",), "--classify": ("twice",), "--space": ("outer",), "--target": ("rgb",),
+            "--shade": ("on",), "--downsample": ("0", "-2", "1.5"), "--gpu-budget": ("0", "nan", "-1"),
+        }
+        for flag, words in bad.items():
+            for word in words:
+                with self.subTest(f"{flag} {word}"):
+                    self.misused("render", PHANTOM, "-o", "p.png", flag, word, cause=f"{flag}: '{re.escape(word)}' is not .+")
+
+    def test_commands_that_are_incomplete_or_unknown(self):
+        for arguments, cause in ((("render", PHANTOM), "--output is required"),
+                                 (("render", "-o", "p.png"), "VOLUME is required"),
+                                 (("render", PHANTOM, "-o"), "--output|-o"),
+                                 (("render", PHANTOM, "-o", "p.png", "--colour"), "--colour"),
+                                 (("sweep", PHANTOM), "--out is required"),
+                                 (("sweep", PHANTOM, "--out", "d", "--layers", "1,x"), "--layers: '1,x'"),
+                                 (("paint",), "paint"),
+                                 (("info",), "VOLUME is required"),
+                                 (("device", "2"), "2")):
+            with self.subTest(arguments):
+                self.misused(*arguments, cause=cause)
+
+    def test_no_command_answers_with_the_help(self):
+        run = self.run_cli()
+        self.assertEqual((run.returncode, run.stdout), (2, ""))
+        for command in COMMANDS:
+            self.assertRegex(run.stderr, rf"(?m)^  {command} ")
+
+
+class Help(CliTest):
+    def test_every_command_explains_itself(self):
+        for command in COMMANDS:
+            with self.subTest(command):
+                text = self.succeeds(command, "--help")
+                self.assertIn(f"slabcast {command}", text)
+                self.assertRegex(text, r"(?m)^Example: .+\n  (\w+=\S+ )?slabcast " + command)
+                for line in text.splitlines():
+                    self.assertLessEqual(len(line), 100)
+        self.assertIn("slabcast render phantom:", self.succeeds("--help"))
+        self.assertIn("--termination", self.succeeds("--help-all"))
+
+    def test_defaults_are_shown(self):
+        text = " ".join(self.succeeds("render", "--help").split())
+        for default in ("1024x1024", "0,10,2.5", "40", "planar", "0.9995", "display", "auto", "rgba8", "000000"):
+            self.assertIn(f"(default: {default})", text)
+
+
+class Pictures(CliTest):
+    def test_png_is_of_the_size_and_shows_something(self):
+        png = files.Png(self.picture(PHANTOM, "--size", "48x32", "--layers", "16", "--planes", "4"))
+        self.assertEqual((png.width, png.height, png.channels), (48, 32, 3))
+        self.assertEqual(png.pixel(0, 0), (0, 0, 0))
+        self.assertGreater(max(png.pixel(24, 16)), 10)
+
+    def test_exr_is_of_the_size(self):
+        self.succeeds("render", PHANTOM, "-o", "p.exr", "--size", "48x32", "--layers", "16", "--planes", "4")
+        header = files.exr_header((self.folder / "p.exr").read_bytes())
+        self.assertEqual(struct.unpack("<4i", header["dataWindow"]), (0, 0, 47, 31))
+
+    def test_background_comes_back_as_it_was_given(self):
+        for space in ("display", "linear"):
+            with self.subTest(space):
+                png = files.Png(self.picture(PHANTOM, *QUICK, "--background", "336699", "--space", space, "--target", "rgba16f"))
+                for got, given in zip(png.pixel(0, 0), (0x33, 0x66, 0x99)):
+                    self.assertAlmostEqual(got, given, delta=1)  # half floats hold 11 bits
+
+    def test_without_background_there_is_alpha(self):
+        png = files.Png(self.picture(PHANTOM, *QUICK, "--background", "none"))
+        self.assertEqual(png.channels, 4)
+        self.assertEqual(png.pixel(0, 0), (0, 0, 0, 0))
+        self.assertGreater(png.pixel(16, 16)[3], 10)
+
+    def test_stereo_draws_two_eyes_side_by_side(self):
+        def halves(ipd):
+            png = files.Png(self.picture(PHANTOM, "--size", "64x32", "--layers", "16", "--planes", "4", "--stereo", ipd))
+            self.assertEqual((png.width, png.height), (64, 32))
+            return [[row[eye * 96:eye * 96 + 96] for row in png.rows] for eye in range(2)]
+        left, right = halves("8")
+        self.assertNotEqual(left, right)
+        self.assertTrue(any(map(any, left)) and any(map(any, right)))
+        left, right = halves("0")
+        self.assertEqual(left, right)
+
+    def test_the_same_command_draws_the_same_picture(self):
+        self.assertEqual(self.picture(PHANTOM, *QUICK), self.picture(PHANTOM, *QUICK))
+
+    def test_skipping_changes_nothing(self):
+        vessels = ("phantom:vessels:48", "--size", "96x96", "--layers", "96", "--planes", "6")
+        self.assertEqual(self.picture(*vessels, "--skip", "none"), self.picture(*vessels, "--skip", "proximity"))
+
+    def test_the_first_of_many_frames_is_written(self):
+        one = self.picture(PHANTOM, *QUICK)
+        self.assertEqual(self.stats(PHANTOM, *QUICK, "--frames", "3")["frame_ms"]["n"], 3)
+        self.assertEqual((self.folder / "p.png").read_bytes(), one)
+
+    def test_turning_the_camera_changes_the_picture(self):
+        self.assertNotEqual(self.picture(PHANTOM, *QUICK), self.picture(PHANTOM, *QUICK, "--camera", "-30,80,2"))
+
+    def test_every_word_of_every_option_draws(self):
+        for words in ("--lattice shells --form unrolled --shade phong --classify preclassified --skip-block 8",
+                      "--exact --space linear --target rgba16f --form loop --termination off --skip proximity",
+                      "--tighten off --skip none --shade phong --termination 0.5 --fov 90 --tf linear --camera 0,90,0"):
+            with self.subTest(words):
+                png = files.Png(self.picture(PHANTOM, *QUICK, *words.split()))
+                self.assertTrue(any(map(any, png.rows)))
+
+
+class Inputs(CliTest):
+    def test_the_same_voxels_draw_the_same_from_every_format(self):
+        self.write("v.nrrd", files.nrrd())
+        self.write("packed.nrrd", files.nrrd(encoding="gzip", data=files.packed(files.ramp())))
+        self.write("v.raw", files.ramp())
+        plain = self.picture("v.nrrd", *QUICK)
+        self.assertEqual(self.picture("packed.nrrd", *QUICK), plain)
+        self.assertNotEqual(self.picture("v.raw", "--raw", "8x8x8,uint8,1x1x2", *QUICK), plain)
+        self.assertEqual(self.picture("v.raw", "--raw", "8x8x8,uint8,1x1x1", *QUICK), plain)
+
+    def test_info_tells_what_was_written(self):
+        self.write("v.nii.gz", files.packed(files.nifti(spacings=(0.5, 1.0, 2.0))))
+        text = self.succeeds("info", "v.nii.gz")
+        for expected in ("8 x 8 x 8, uint8", "0.5 x 1 x 2 mm, box 4 x 8 x 16 mm", "0 to 224", "mean 112"):
+            self.assertIn(expected, text)
+        self.assertIn("4 x 4 x 4", self.succeeds("info", "v.nii.gz", "--downsample", "2"))
+
+    def test_voxels_that_are_no_numbers_are_noted(self):
+        values = [1.0] * 60 + [float("nan"), float("inf"), float("-inf"), 2.0]
+        self.write("v.nrrd", files.nrrd("4 4 4", kind="float", data=struct.pack("<64f", *values)))
+        self.picture("v.nrrd", *QUICK, notes=r"slabcast: v.nrrd: 3 voxels are NaN or infinite[^\n]*\n")
+
+    def test_device_names_itself_and_its_formats(self):
+        text = self.succeeds("device")
+        for expected in ("driver", "3D limit", "r8 ", "r16f", "GL_OVR_multiview2"):
+            self.assertIn(expected, text)
+
+
+class Statistics(CliTest):
+    KEYS = {
+        "device": {"renderer", "vendor", "version", "software"},
+        "plan": {"planes", "layers", "layersPerPlane", "variant", "reasons"},
+        "frame_ms": {"median", "min", "max", "n"},
+        "counters": {"fragments", "layers_evaluated", "layers_skipped", "volume_fetches", "skip_fetches"},
+        "volume": {"name", "dims", "type", "spacingMm", "bytes"},
+    }
+
+    def test_keys_are_stable(self):
+        stats = self.stats(PHANTOM, *QUICK)
+        for part, keys in self.KEYS.items():
+            self.assertLessEqual(keys, set(stats[part]), part)
+        self.assertEqual((stats["plan"]["planes"], stats["plan"]["layersPerPlane"], stats["plan"]["layers"]), (4, 4, 16))
+        self.assertEqual(stats["volume"]["dims"], [24, 24, 24])
+        self.assertEqual(stats["volume"]["bytes"], 24 ** 3)
+        times = stats["frame_ms"]
+        self.assertTrue(0 < times["min"] <= times["median"] <= times["max"])
+
+    def test_skipping_saves_work(self):
+        sparse = ("phantom:vessels:48", "--size", "48x48", "--layers", "64", "--planes", "4", "--termination", "off")
+        without = self.stats(*sparse, "--skip", "none")["counters"]
+        skipping = self.stats(*sparse, "--skip", "proximity")["counters"]
+        self.assertEqual((without["layers_skipped"], without["skip_fetches"]), (0, 0))
+        self.assertGreater(skipping["layers_skipped"], 0)
+        self.assertLess(skipping["layers_evaluated"], without["layers_evaluated"])
+
+    def test_explain_gives_reasons_and_the_measured_ratio_is_the_fastest(self):
+        text = self.succeeds("render", PHANTOM, "-o", "p.png", "--size", "64x64", "--layers", "16", "--explain")
+        for what in ("texels", "layers 16", "ratio", "skip", "classification"):
+            self.assertRegex(text, rf"(?m)^{what}.*: .+")
+        chosen, measured = re.search(r"(?m)^ratio ([^:]+): fastest of those measured on this device: (.+)$", text).groups()
+        times = {name: float(ms) for name, ms in re.findall(r"(\d+x\d+ \w+) ([\d.e-]+) ms", measured)}
+        self.assertGreaterEqual(len(times), 3)
+        self.assertEqual(times[chosen], min(times.values()))
+
+
+class Sweep(CliTest):
+    LAYERS = (1, 4, 16)  # and 0: all
+
+    def test_sweep_writes_rows_and_a_page_of_its_own(self):
+        self.succeeds("sweep", "phantom:shells:32", "--size", "64x64", "--layers", "1,4,16,0", "--frames", "2",
+                      "--out", "out/sweep", notes=r"[^\n]*report\.html\n")
+        folder = self.folder / "out" / "sweep"
+        sweep = json.loads((folder / "sweep.json").read_text())
+        rows = sweep["rows"]
+        for key in ("command", "commit", "date", "device", "volume", "conditions", "memory"):
+            self.assertTrue(sweep[key], key)
+        total = sweep["conditions"]["totalLayers"]
+        for skip in ("none", "proximity"):
+            self.assertEqual({row["layersPerPlane"] for row in rows if row["skip"] == skip}, {*self.LAYERS, total})
+        for row in rows:
+            self.assertGreaterEqual(row["planes"] * row["layersPerPlane"], total)
+            self.assertEqual(row["frameMs"]["n"], 2)
+            self.assertTrue((folder / row["thumbnail"]).is_file())
+
+        with open(folder / "sweep.csv", newline="", encoding="utf-8") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual(len(table), len(rows))
+        for line, row in zip(table, rows):
+            self.assertEqual((int(line["planes"]), int(line["layersPerPlane"]), line["skip"]),
+                             (row["planes"], row["layersPerPlane"], row["skip"]))
+            self.assertEqual(int(line["layers_evaluated"]), row["counters"]["layers_evaluated"])
+
+        page = folder / "report.html"
+        self.assertEqual(re.findall(r"""(?:src|href)\s*=\s*["'](?!data:|#)[^"']*""", page.read_text()), [])
+        page.unlink()
+        subprocess.run(["/usr/bin/python3", REPORT, folder], check=True, capture_output=True)
+        self.assertTrue(page.is_file())
+
+    def test_sweeps_that_cannot_be(self):
+        self.write("file", "kept")
+        self.fails("sweep", PHANTOM, "--out", "file/sweep", cause="file/sweep", remedy="give another")
+        self.fails("sweep", "missing.nrrd", "--out", "sweep", cause="missing.nrrd", remedy="check the path")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 2 or not os.access(sys.argv[1], os.X_OK):
+        sys.exit(__doc__)
+    SLABCAST = str(Path(sys.argv.pop(1)).resolve())
+    unittest.main()

@@ -1,0 +1,351 @@
+#include "core/frame/frame_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/frame_scene.h"
+
+namespace slabcast {
+namespace {
+
+using test::Dice;
+
+/// A head CT under a bone preset, say: half of it empty.
+SceneFacts boneFacts() {
+    return {.sphere = {glm::dvec3(0.0), 222.0},
+            .smallestVoxelEdgeMm = 1.0,
+            .occupiedFraction = 0.5,
+            .maxExtinctionPerMm = 2.0,
+            .minPositiveExtinctionPerMm = 0.1};
+}
+
+const gl::Caps kHeadset{};
+const gl::Caps kSoftware = [] {
+    gl::Caps caps;
+    caps.isSoftware = true;
+    return caps;
+}();
+
+FramePlan planned(const Settings& settings, const SceneFacts& facts = boneFacts(), const gl::Caps& caps = kHeadset) {
+    const Result<FramePlan> result = plan(facts, settings, caps, {});
+    EXPECT_TRUE(result.has_value()) << result.error().detail;
+    return *result;
+}
+
+/// The reason whose `what` starts like that; null where there is none.
+const Reason* reasonFor(const FramePlan& plan, const std::string& start) {
+    const auto found = std::find_if(plan.reasons.begin(), plan.reasons.end(),
+                                    [&](const Reason& r) { return r.what.rfind(start, 0) == 0; });
+    return found == plan.reasons.end() ? nullptr : &*found;
+}
+
+/// Any settings within their ranges.
+Settings randomSettings(Dice& dice) {
+    Settings s;
+    s.classification = dice.chance(0.5) ? Classification::Post : Classification::Pre;
+    if (dice.chance(0.5)) {
+        s.skip = dice.chance(0.5) ? SkipStructure::None : SkipStructure::Proximity;
+    }
+    s.lattice = dice.chance(0.5) ? LatticeKind::Planar : LatticeKind::Shells;
+    s.layerSpacingVoxels = dice.logUniform(0.1, 100.0);
+    if (dice.chance(0.5)) {
+        s.totalLayers = 1 + dice.below(1000);
+    }
+    const int dealt = dice.below(3);
+    if (dealt == 1) {
+        s.planes = 1 + dice.below(600);
+    } else if (dealt == 2) {
+        s.layersPerPlane = 1 + dice.below(600);
+    }
+    s.form = dice.chance(0.5) ? SegmentForm::Auto : SegmentForm::Loop;
+    s.tighten = dice.chance(0.5);
+    s.target = dice.chance(0.5) ? TargetFormat::Rgba8 : TargetFormat::Rgba16f;
+    s.space = dice.chance(0.5) ? CompositingSpace::Display : CompositingSpace::Linear;
+    s.shaded = dice.chance(0.5);
+    if (dice.chance(0.3)) {
+        s.termination.reset();
+    }
+    return s;
+}
+
+SceneFacts randomFacts(Dice& dice) {
+    SceneFacts facts = boneFacts();
+    facts.sphere.radiusMm = dice.logUniform(1.0, 400.0);
+    facts.smallestVoxelEdgeMm = dice.logUniform(0.1, 5.0);
+    facts.exactField = dice.chance(0.5);
+    facts.anythingVisible = dice.chance(0.8);
+    facts.occupiedFraction = dice.uniform(0.0, 1.0);
+    facts.maxExtinctionPerMm = dice.logUniform(1e-6, 100.0);
+    facts.minPositiveExtinctionPerMm = facts.maxExtinctionPerMm * dice.logUniform(1e-6, 1.0);
+    return facts;
+}
+
+/// What must hold of every plan, whatever it was asked.
+void expectSound(const FramePlan& p, const Settings& s, const SceneFacts& facts) {
+    EXPECT_GE(std::int64_t{p.planes} * p.layersPerPlane, p.lattice.total);
+    EXPECT_GE(p.lattice.total * p.lattice.spacingMm, 2.0 * facts.sphere.radiusMm * (1.0 - 1e-11));
+    EXPECT_EQ(p.lattice.total, totalLayers(s, facts));
+    EXPECT_EQ(p.lattice.kind, s.lattice);
+    EXPECT_TRUE(p.variant.valid()) << name(p.variant);
+    EXPECT_FALSE(p.variant.counts);
+    EXPECT_TRUE(p.variant.unroll == 0 || p.variant.unroll >= p.layersPerPlane);
+    EXPECT_EQ(p.variant.terminates, p.terminationAlpha < 1.0);
+    EXPECT_EQ(p.drawsNothing, !facts.anythingVisible);
+    const bool narrowLinear = p.space == CompositingSpace::Linear && p.target == TargetFormat::Rgba8;
+    EXPECT_FALSE(narrowLinear);
+}
+
+/// One reason for each choice, named as it was made, each on one line.
+void expectExplained(const FramePlan& p, const SceneFacts& facts) {
+    const Ratio ratio{p.planes, p.layersPerPlane, p.variant.unroll > 0 ? SegmentForm::Unrolled : SegmentForm::Loop};
+    std::vector<std::string> choices = {
+        "layers " + std::to_string(p.lattice.total),
+        std::string(name(p.lattice.kind)) + " lattice",
+        "ratio " + name(ratio),
+        std::string("classification ") + name(p.variant.classification),
+        std::string("skip ") + name(p.variant.skip),
+        p.variant.terminates ? "termination" : "no termination",
+        p.tighten ? "tight planes" : "10-gons",
+        std::string("target ") + name(p.target),
+    };
+    if (p.drawsNothing) {
+        choices.push_back("draws nothing");
+    }
+    if (facts.exactField && p.variant.classification == Classification::Post) {
+        choices.push_back("exact field");
+    }
+    for (const std::string& choice : choices) {
+        EXPECT_NE(reasonFor(p, choice), nullptr) << choice;
+    }
+    std::set<std::string> whats;
+    for (const Reason& reason : p.reasons) {
+        EXPECT_FALSE(reason.why.empty()) << reason.what;
+        EXPECT_EQ((reason.what + reason.why).find('\n'), std::string::npos);
+        whats.insert(reason.what);
+    }
+    EXPECT_EQ(whats.size(), p.reasons.size());
+    EXPECT_LE(p.reasons.size(), choices.size() + 1); // and at most a warning
+}
+
+TEST(FramePlan, IsSoundAndExplainedForAnySettings) {
+    Dice dice(1);
+    for (int k = 0; k < 3000; ++k) {
+        const Settings settings = randomSettings(dice);
+        const SceneFacts facts = randomFacts(dice);
+        const gl::Caps& caps = dice.chance(0.5) ? kHeadset : kSoftware;
+        const Result<FramePlan> first = plan(facts, settings, caps, {});
+        ASSERT_TRUE(first.has_value()) << first.error().detail;
+        expectSound(*first, settings, facts);
+        expectExplained(*first, facts);
+        EXPECT_EQ(*first, *plan(facts, settings, caps, {})); // pure
+    }
+}
+
+TEST(FramePlan, DiffersWhereAPictureWould) {
+    const FramePlan base = planned({});
+    const Settings changed[] = {
+        {.classification = Classification::Pre},
+        {.skip = SkipStructure::None},
+        {.lattice = LatticeKind::Shells},
+        {.layerSpacingVoxels = 0.5},
+        {.totalLayers = 100},
+        {.planes = 3},
+        {.layersPerPlane = 8},
+        {.form = SegmentForm::Loop},
+        {.tighten = false},
+        {.target = TargetFormat::Rgba16f},
+        {.space = CompositingSpace::Linear},
+        {.shaded = true},
+        {.termination = std::nullopt},
+    };
+    for (const Settings& settings : changed) {
+        EXPECT_NE(planned(settings), base);
+    }
+    EXPECT_EQ(planned({}), base);
+}
+
+TEST(FramePlan, TheRatioNeverMovesTheLattice) {
+    for (const Settings& settings : {Settings{.totalLayers = 444}, Settings{.layerSpacingVoxels = 0.7}}) {
+        const Lattice lattice = planned(settings).lattice;
+        for (const int planes : {1, 2, 7, 444, 100000}) {
+            Settings dealt = settings;
+            dealt.planes = planes;
+            const FramePlan p = planned(dealt);
+            EXPECT_EQ(p.lattice, lattice) << planes;
+            EXPECT_EQ(p.planes, std::min(planes, lattice.total));
+            // As few layers on each as will do: every layer lies on exactly one plane, the one of its quotient.
+            EXPECT_LT(std::int64_t{p.planes} * (p.layersPerPlane - 1), lattice.total) << planes;
+        }
+    }
+}
+
+TEST(FramePlan, SpacingAndTotalGiveTheSameLattice) {
+    const FramePlan bySpacing = planned({.layerSpacingVoxels = 1.0});
+    EXPECT_EQ(bySpacing.lattice, (Lattice{LatticeKind::Planar, 444, 1.0}));
+    EXPECT_EQ(planned({.totalLayers = 444}).lattice, bySpacing.lattice);
+    EXPECT_EQ(planned({.totalLayers = 1}).lattice, (Lattice{LatticeKind::Planar, 1, 444.0}));
+}
+
+TEST(FramePlan, TakesTheFastestMeasuredRatio) {
+    const RatioMeasurement measured[] = {{{444, 1, SegmentForm::Unrolled}, 9.0},
+                                         {{28, 16, SegmentForm::Unrolled}, 3.0},
+                                         {{1, 444, SegmentForm::Loop}, 5.0}};
+    const FramePlan p = *plan(boneFacts(), {}, kHeadset, measured);
+    EXPECT_EQ(p.planes, 28);
+    EXPECT_EQ(p.layersPerPlane, 16);
+    EXPECT_EQ(p.variant.unroll, 16);
+    const Reason* reason = reasonFor(p, "ratio 28x16 unrolled");
+    ASSERT_NE(reason, nullptr);
+    for (const char* listed : {"444x1 unrolled 9 ms", "28x16 unrolled 3 ms", "1x444 loop 5 ms"}) {
+        EXPECT_NE(reason->why.find(listed), std::string::npos) << listed;
+    }
+    const Settings asked{.planes = 7}; // goes before what was measured
+    EXPECT_EQ(plan(boneFacts(), asked, kHeadset, measured)->planes, 7);
+}
+
+TEST(FramePlan, AMeasurementOfOtherLayersStillCoversAll) {
+    const RatioMeasurement measured[] = {{{28, 16, SegmentForm::Unrolled}, 3.0}};
+    for (const int total : {1, 5, 444, 888, 5000}) {
+        const Settings settings{.totalLayers = total};
+        const FramePlan p = *plan(boneFacts(), settings, kHeadset, measured);
+        expectSound(p, settings, boneFacts());
+        EXPECT_EQ(p.layersPerPlane, std::min(16, total));
+    }
+}
+
+TEST(FramePlan, WithoutMeasurementsASoftwareDriverLoops) {
+    EXPECT_EQ(planned({}).variant.unroll, 16);
+    EXPECT_EQ(planned({}, boneFacts(), kSoftware).variant.unroll, 0);
+    EXPECT_EQ(planned({.form = SegmentForm::Unrolled}, boneFacts(), kSoftware).variant.unroll, 16);
+    EXPECT_EQ(planned({.planes = 1}).variant.unroll, 0); // beyond the list
+    EXPECT_EQ(planned({.layersPerPlane = 5}).variant.unroll, 8);
+}
+
+TEST(FramePlan, CandidatesReachFromSlicingToRayCasting) {
+    for (const int total : {1, 7, 16, 64, 444}) {
+        const Settings settings{.totalLayers = total};
+        const std::vector<Ratio> candidates = ratioCandidates(settings, boneFacts());
+        std::set<std::string> names;
+        bool slicing = false;
+        bool casting = false;
+        for (const Ratio& r : candidates) {
+            EXPECT_GE(r.planes * r.layersPerPlane, total);
+            EXPECT_LT((r.planes - 1) * r.layersPerPlane, total); // no plane without layers
+            EXPECT_TRUE(r.form == SegmentForm::Loop || unrollLengthFor(r.layersPerPlane) > 0) << name(r);
+            names.insert(name(r));
+            slicing |= r.layersPerPlane == 1;
+            casting |= r.planes == 1;
+        }
+        EXPECT_EQ(names.size(), candidates.size());
+        EXPECT_TRUE(slicing && casting) << total;
+    }
+    for (const SegmentForm form : {SegmentForm::Loop, SegmentForm::Unrolled}) {
+        for (const Ratio& r : ratioCandidates({.form = form}, boneFacts())) {
+            EXPECT_EQ(r.form, form);
+        }
+    }
+}
+
+TEST(FramePlan, TerminationIsLeftOutWhereItCannotHappen) {
+    EXPECT_TRUE(planned({}).variant.terminates);
+    EXPECT_EQ(planned({.termination = 0.9}).terminationAlpha, 0.9);
+    EXPECT_FALSE(planned({.termination = std::nullopt}).variant.terminates);
+    EXPECT_FALSE(planned({.layersPerPlane = 1}).variant.terminates);
+    // A segment of 16 mm reaches 0.9 from an extinction of ln(10)/16 per mm on; half of it is promised to suffice,
+    // for oblique rays.
+    SceneFacts facts = boneFacts();
+    const Settings settings{.termination = 0.9};
+    facts.maxExtinctionPerMm = 0.51 * std::log(10.0) / 16.0;
+    EXPECT_TRUE(planned(settings, facts).variant.terminates);
+    facts.maxExtinctionPerMm = 0.49 * std::log(10.0) / 16.0;
+    EXPECT_FALSE(planned(settings, facts).variant.terminates);
+    EXPECT_EQ(planned(settings, facts).terminationAlpha, 1.0);
+}
+
+TEST(FramePlan, SkippingIsLeftOutWhereNothingIsEmpty) {
+    SceneFacts facts = boneFacts();
+    EXPECT_EQ(planned({}, facts).variant.skip, SkipStructure::Proximity);
+    facts.occupiedFraction = 1.0;
+    EXPECT_EQ(planned({}, facts).variant.skip, SkipStructure::None);
+    EXPECT_EQ(planned({.skip = SkipStructure::Proximity}, facts).variant.skip, SkipStructure::Proximity);
+    facts.occupiedFraction = 0.0;
+    EXPECT_EQ(planned({.skip = SkipStructure::None}, facts).variant.skip, SkipStructure::None);
+}
+
+TEST(FramePlan, BakedTexelsNeedNeitherGradientsNorFetches) {
+    SceneFacts facts = boneFacts();
+    facts.exactField = true;
+    const FramePlan post = planned({.shaded = true}, facts);
+    EXPECT_TRUE(post.variant.shaded);
+    EXPECT_TRUE(post.variant.exactField);
+    const FramePlan pre = planned({.classification = Classification::Pre, .shaded = true}, facts);
+    EXPECT_FALSE(pre.variant.shaded);
+    EXPECT_FALSE(pre.variant.exactField);
+    EXPECT_FALSE(planned({}, facts).variant.shaded);
+}
+
+TEST(FramePlan, WarnsWhereEightBitsLoseTheFaintest) {
+    // A plane of 16 mm adds 1 - exp(-16 s): below 1/510 from s = -ln(1 - 1/510)/16 down.
+    const double limit = -std::log(1.0 - 1.0 / 510.0) / 16.0;
+    SceneFacts facts = boneFacts();
+    facts.minPositiveExtinctionPerMm = 0.99 * limit;
+    EXPECT_NE(reasonFor(planned({}, facts), "warning"), nullptr);
+    EXPECT_EQ(reasonFor(planned({.target = TargetFormat::Rgba16f}, facts), "warning"), nullptr);
+    EXPECT_EQ(reasonFor(planned({.layersPerPlane = 32}, facts), "warning"), nullptr); // fewer planes keep it
+    facts.minPositiveExtinctionPerMm = 1.01 * limit;
+    EXPECT_EQ(reasonFor(planned({}, facts), "warning"), nullptr);
+}
+
+TEST(FramePlan, LinearLightIsNotBlendedInEightBits) {
+    const FramePlan p = planned({.target = TargetFormat::Rgba8, .space = CompositingSpace::Linear});
+    EXPECT_EQ(p.target, TargetFormat::Rgba16f);
+    EXPECT_EQ(p.space, CompositingSpace::Linear);
+    EXPECT_EQ(planned({}).target, TargetFormat::Rgba8);
+}
+
+TEST(FramePlan, DrawsNothingWhereNothingIsVisible) {
+    SceneFacts facts = boneFacts();
+    facts.anythingVisible = false;
+    EXPECT_TRUE(planned({}, facts).drawsNothing);
+    EXPECT_FALSE(planned({}).drawsNothing);
+}
+
+TEST(FramePlan, RefusesWhatIsOutOfRange) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    const std::pair<Settings, const char*> cases[] = {
+        {{.layerSpacingVoxels = 0.0}, "layer spacing"},
+        {{.layerSpacingVoxels = -1.0}, "layer spacing"},
+        {{.layerSpacingVoxels = kNan}, "layer spacing"},
+        {{.layerSpacingVoxels = 2e6}, "layer spacing"},
+        {{.totalLayers = 0}, "total layers"},
+        {{.totalLayers = (1 << 20) + 1}, "total layers"},
+        {{.planes = 0}, "planes"},
+        {{.planes = -3}, "planes"},
+        {{.layersPerPlane = 0}, "layers per plane"},
+        {{.planes = 2, .layersPerPlane = 2}, "both"},
+        {{.termination = 1.5}, "termination"},
+        {{.termination = -0.1}, "termination"},
+        {{.termination = kNan}, "termination"},
+        {{.layersPerPlane = 65, .form = SegmentForm::Unrolled}, "65"},
+        {{.planes = 1, .form = SegmentForm::Unrolled}, "444"},
+    };
+    for (const auto& [settings, named] : cases) {
+        const Result<FramePlan> refused = plan(boneFacts(), settings, kHeadset, {});
+        ASSERT_FALSE(refused.has_value()) << named;
+        EXPECT_EQ(refused.error().code, ErrorCode::InvalidArgument);
+        EXPECT_NE(refused.error().detail.find(named), std::string::npos) << refused.error().detail;
+        EXPECT_NE(refused.error().detail.find(": "), std::string::npos) << "cause and remedy";
+    }
+    SceneFacts huge = boneFacts();
+    huge.sphere.radiusMm = 1e6;
+    const Result<FramePlan> tooMany = plan(huge, {.layerSpacingVoxels = 0.1}, kHeadset, {});
+    ASSERT_FALSE(tooMany.has_value());
+    EXPECT_EQ(tooMany.error().code, ErrorCode::InvalidArgument);
+}
+
+} // namespace
+} // namespace slabcast
