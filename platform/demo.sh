@@ -10,8 +10,9 @@ skull=$out/skull.nrrd
 picture=$out/skull.png
 report=$out/sweep/report.html
 
-renderOptions=(--size 1024x1024 --tf ct-bone --shade phong)
-sweepOptions=(--size 256x256 --tf ct-bone --frames 6 --layers "1,2,4,8,12,16,24,32,64,444")
+renderOptions=(--size 1024x1024 --tf ct-bone --shade phong --camera=-32,12,2.0 --fov 34 --background 0d1014
+    --layer-spacing 0.25 --planes 100 --target rgba16f)
+sweepOptions=(--size 512x512 --tf ct-bone --classify preclassified --shade phong --frames 4)
 
 # newer TARGET INPUT...: the target exists and no input is newer.
 newer() {

@@ -30,7 +30,8 @@ const gl::Caps kSoftware = [] {
     return caps;
 }();
 
-FramePlan planned(const Settings& settings, const SceneFacts& facts = boneFacts(), const gl::Caps& caps = kHeadset) {
+FramePlan planned(const Settings& settings, const SceneFacts& facts = boneFacts(),
+                  const gl::Caps& caps = kHeadset) {
     const Result<FramePlan> result = plan(facts, settings, caps, {});
     EXPECT_TRUE(result.has_value()) << result.error().detail;
     return *result;
@@ -95,13 +96,15 @@ void expectSound(const FramePlan& p, const Settings& s, const SceneFacts& facts)
     EXPECT_TRUE(p.variant.unroll == 0 || p.variant.unroll >= p.layersPerPlane);
     EXPECT_EQ(p.variant.terminates, p.terminationAlpha < 1.0);
     EXPECT_EQ(p.drawsNothing, !facts.anythingVisible);
-    const bool narrowLinear = p.space == CompositingSpace::Linear && p.target == TargetFormat::Rgba8;
+    const bool narrowLinear =
+        p.space == CompositingSpace::Linear && p.target == TargetFormat::Rgba8;
     EXPECT_FALSE(narrowLinear);
 }
 
 /// One reason for each choice, named as it was made, each on one line.
 void expectExplained(const FramePlan& p, const SceneFacts& facts) {
-    const Ratio ratio{p.planes, p.layersPerPlane, p.variant.unroll > 0 ? SegmentForm::Unrolled : SegmentForm::Loop};
+    const Ratio ratio{p.planes, p.layersPerPlane,
+                      p.variant.unroll > 0 ? SegmentForm::Unrolled : SegmentForm::Loop};
     std::vector<std::string> choices = {
         "layers " + std::to_string(p.lattice.total),
         std::string(name(p.lattice.kind)) + " lattice",
@@ -169,7 +172,8 @@ TEST(FramePlan, DiffersWhereAPictureWould) {
 }
 
 TEST(FramePlan, TheRatioNeverMovesTheLattice) {
-    for (const Settings& settings : {Settings{.totalLayers = 444}, Settings{.layerSpacingVoxels = 0.7}}) {
+    for (const Settings& settings :
+         {Settings{.totalLayers = 444}, Settings{.layerSpacingVoxels = 0.7}}) {
         const Lattice lattice = planned(settings).lattice;
         for (const int planes : {1, 2, 7, 444, 100000}) {
             Settings dealt = settings;
@@ -177,7 +181,8 @@ TEST(FramePlan, TheRatioNeverMovesTheLattice) {
             const FramePlan p = planned(dealt);
             EXPECT_EQ(p.lattice, lattice) << planes;
             EXPECT_EQ(p.planes, std::min(planes, lattice.total));
-            // As few layers on each as will do: every layer lies on exactly one plane, the one of its quotient.
+            // As few layers on each as will do: every layer lies on exactly one plane, the one of
+            // its quotient.
             EXPECT_LT(std::int64_t{p.planes} * (p.layersPerPlane - 1), lattice.total) << planes;
         }
     }
@@ -235,7 +240,8 @@ TEST(FramePlan, CandidatesReachFromSlicingToRayCasting) {
         for (const Ratio& r : candidates) {
             EXPECT_GE(r.planes * r.layersPerPlane, total);
             EXPECT_LT((r.planes - 1) * r.layersPerPlane, total); // no plane without layers
-            EXPECT_TRUE(r.form == SegmentForm::Loop || unrollLengthFor(r.layersPerPlane) > 0) << name(r);
+            EXPECT_TRUE(r.form == SegmentForm::Loop || unrollLengthFor(r.layersPerPlane) > 0)
+                << name(r);
             names.insert(name(r));
             slicing |= r.layersPerPlane == 1;
             casting |= r.planes == 1;
@@ -255,8 +261,8 @@ TEST(FramePlan, TerminationIsLeftOutWhereItCannotHappen) {
     EXPECT_EQ(planned({.termination = 0.9}).terminationAlpha, 0.9);
     EXPECT_FALSE(planned({.termination = std::nullopt}).variant.terminates);
     EXPECT_FALSE(planned({.layersPerPlane = 1}).variant.terminates);
-    // A segment of 16 mm reaches 0.9 from an extinction of ln(10)/16 per mm on; half of it is promised to suffice,
-    // for oblique rays.
+    // A segment of 16 mm reaches 0.9 from an extinction of ln(10)/16 per mm on; half of it is
+    // promised to suffice, for oblique rays.
     SceneFacts facts = boneFacts();
     const Settings settings{.termination = 0.9};
     facts.maxExtinctionPerMm = 0.51 * std::log(10.0) / 16.0;
@@ -271,7 +277,8 @@ TEST(FramePlan, SkippingIsLeftOutWhereNothingIsEmpty) {
     EXPECT_EQ(planned({}, facts).variant.skip, SkipStructure::Proximity);
     facts.occupiedFraction = 1.0;
     EXPECT_EQ(planned({}, facts).variant.skip, SkipStructure::None);
-    EXPECT_EQ(planned({.skip = SkipStructure::Proximity}, facts).variant.skip, SkipStructure::Proximity);
+    EXPECT_EQ(planned({.skip = SkipStructure::Proximity}, facts).variant.skip,
+              SkipStructure::Proximity);
     facts.occupiedFraction = 0.0;
     EXPECT_EQ(planned({.skip = SkipStructure::None}, facts).variant.skip, SkipStructure::None);
 }
@@ -295,7 +302,8 @@ TEST(FramePlan, WarnsWhereEightBitsLoseTheFaintest) {
     facts.minPositiveExtinctionPerMm = 0.99 * limit;
     EXPECT_NE(reasonFor(planned({}, facts), "warning"), nullptr);
     EXPECT_EQ(reasonFor(planned({.target = TargetFormat::Rgba16f}, facts), "warning"), nullptr);
-    EXPECT_EQ(reasonFor(planned({.layersPerPlane = 32}, facts), "warning"), nullptr); // fewer planes keep it
+    EXPECT_EQ(reasonFor(planned({.layersPerPlane = 32}, facts), "warning"),
+              nullptr); // fewer planes keep it
     facts.minPositiveExtinctionPerMm = 1.01 * limit;
     EXPECT_EQ(reasonFor(planned({}, facts), "warning"), nullptr);
 }

@@ -17,13 +17,15 @@ using RealVec3 = glm::vec<3, Real>;
 using RealVec4 = glm::vec<4, Real>;
 using RealMat4 = glm::mat<4, 4, Real>;
 
-/// Where layer `index` is sampled along a pixel's ray, in mm of patient space: built in view space, in extended
-/// precision, by intersecting the ray with the layer's plane or shell.
+/// Where layer `index` is sampled along a pixel's ray, in mm of patient space: built in view space,
+/// in extended precision, by intersecting the ray with the layer's plane or shell.
 RealVec3 sampleByIntersection(const FrameScene& scene, glm::dvec2 fragCoord, int index) {
     const RealMat4 viewFromModel(scene.view.viewFromModel);
-    const RealVec3 centre(viewFromModel * RealVec4(RealVec3(scene.geometry.boundingSphere().centreMm), 1.0L));
+    const RealVec3 centre(viewFromModel *
+                          RealVec4(RealVec3(scene.geometry.boundingSphere().centreMm), 1.0L));
     const Real viewUnitsPerMm = glm::length(RealVec3(viewFromModel[0]));
-    const Real offset = (index + 0.5L - scene.lattice.total / 2.0L) * scene.lattice.spacingMm * viewUnitsPerMm;
+    const Real offset =
+        (index + 0.5L - scene.lattice.total / 2.0L) * scene.lattice.spacingMm * viewUnitsPerMm;
     const RealVec3 perDepth(RealVec3(glm::dvec3(scene.tangentAt(fragCoord), -1.0)));
     const RealVec3 place = scene.lattice.kind == LatticeKind::Planar
                                ? perDepth * (offset - centre.z)
@@ -62,7 +64,8 @@ TEST(Lattice, SamplesLieWhereTheMatricesSay) {
             const RealVec3 sample = modelOf(scene, samplePosition(ray, total, layer));
             const Real off = glm::distance(sample, sampleByIntersection(scene, at, layer));
             EXPECT_LT(off, 1e-9 * radius) << "total " << total << ", layer " << layer;
-            const Real step = glm::distance(sample, modelOf(scene, samplePosition(ray, total, layer + 1)));
+            const Real step =
+                glm::distance(sample, modelOf(scene, samplePosition(ray, total, layer + 1)));
             EXPECT_NEAR(static_cast<double>(step), ray.layerLengthMm, 1e-9 * radius);
         }
     });
@@ -74,7 +77,8 @@ TEST(Lattice, LayersAddUpToTheLengthInside) {
         for (int layer = 0; layer < scene.lattice.total; ++layer) {
             sumMm += layerWeight(ray, scene.lattice.total, layer) * ray.layerLengthMm;
         }
-        // Bounds instead of a tolerance: a ray that grazes a face may gain or lose all of its length by rounding.
+        // Bounds instead of a tolerance: a ray that grazes a face may gain or lose all of its
+        // length by rounding.
         const double slack = 1e-9 * scene.geometry.boundingSphere().radiusMm;
         EXPECT_GE(sumMm, test::lengthInsideMm(scene, at, -slack) - slack);
         EXPECT_LE(sumMm, test::lengthInsideMm(scene, at, slack) + slack);
@@ -94,7 +98,8 @@ TEST(Lattice, LayersMetAreThoseWithLength) {
             const double low = layer - total / 2.0;
             const double inside = std::max(0.0, std::min(exit, low + 1.0) - std::max(entry, low));
             EXPECT_EQ(layerWeight(ray, total, layer), inside);
-            EXPECT_EQ(layer >= met.begin && layer < met.end, inside > 0.0) << entry << " " << exit << " " << total;
+            EXPECT_EQ(layer >= met.begin && layer<met.end, inside> 0.0)
+                << entry << " " << exit << " " << total;
         }
     }
 }
@@ -146,7 +151,8 @@ TEST(Lattice, TheViewportsPlaceMovesNothing) {
 }
 
 TEST(Lattice, OnTheAxisItIsWhatOneDraws) {
-    // A cube of 10 mm, 30 mm before the eye, four layers of 5 mm: sampled 22.5, 27.5, 32.5 and 37.5 mm away.
+    // A cube of 10 mm, 30 mm before the eye, four layers of 5 mm: sampled 22.5, 27.5, 32.5 and 37.5
+    // mm away.
     FrameScene scene;
     scene.geometry = {.dims = glm::ivec3(10), .originMm = glm::dvec3(-4.5)};
     scene.view.viewFromModel = glm::translate(glm::dmat4(1.0), {0.0, 0.0, -30.0});
@@ -157,7 +163,8 @@ TEST(Lattice, OnTheAxisItIsWhatOneDraws) {
         for (int layer = 0; layer < 4; ++layer) {
             const double z = -22.5 - 5.0 * layer + 30.0; // of the model
             const glm::dvec3 expected(0.5, 0.5, (z + 5.0) / 10.0);
-            EXPECT_NEAR(glm::distance(samplePosition(ray, 4, layer), expected), 0.0, 1e-14) << name(kind);
+            EXPECT_NEAR(glm::distance(samplePosition(ray, 4, layer), expected), 0.0, 1e-14)
+                << name(kind);
         }
         EXPECT_NEAR(ray.layerLengthMm, 5.0, 1e-14);
         EXPECT_NEAR(ray.entry, -1.0, 1e-14);

@@ -20,8 +20,11 @@ struct SegmentCase {
 };
 
 constexpr int kAll = 1 << 20; // more layers than there are: one plane
-constexpr SegmentCase kSegmentCases[] = {{1, SegmentForm::Unrolled}, {1, SegmentForm::Loop}, {8, SegmentForm::Unrolled},
-                                         {11, SegmentForm::Loop},    {kAll, SegmentForm::Loop}};
+constexpr SegmentCase kSegmentCases[] = {{1, SegmentForm::Unrolled},
+                                         {1, SegmentForm::Loop},
+                                         {8, SegmentForm::Unrolled},
+                                         {11, SegmentForm::Loop},
+                                         {kAll, SegmentForm::Loop}};
 
 /// Above 2.5 radii away, turned about two axes and seen past the middle: nothing is symmetric.
 View asymmetricView(const Scene& scene) {
@@ -38,8 +41,9 @@ double chordMm(const Scene& scene, const View& view, glm::dvec2 fragCoord) {
     const glm::dmat4 modelFromView = glm::inverse(view.viewFromModel);
     const glm::dmat4 uvwFromView = scene.geometry().uvwFromModel() * modelFromView;
     const Frustum& f = view.frustum;
-    const glm::dvec2 tangent = glm::dvec2(f.left, f.bottom) +
-                               fragCoord / glm::dvec2(kSize) * glm::dvec2(f.right - f.left, f.top - f.bottom);
+    const glm::dvec2 tangent =
+        glm::dvec2(f.left, f.bottom) +
+        fragCoord / glm::dvec2(kSize) * glm::dvec2(f.right - f.left, f.top - f.bottom);
     const glm::dvec3 direction = glm::normalize(glm::dvec3(tangent, -1.0));
     const glm::dvec3 eye = glm::dvec3(uvwFromView * glm::dvec4(0.0, 0.0, 0.0, 1.0));
     const glm::dvec3 slope = glm::dmat3(uvwFromView) * direction;
@@ -47,18 +51,21 @@ double chordMm(const Scene& scene, const View& view, glm::dvec2 fragCoord) {
     const glm::dvec3 b = (1.0 - eye) / slope;
     const glm::dvec3 enter = glm::min(a, b);
     const glm::dvec3 leave = glm::max(a, b);
-    return std::max(0.0, std::min({leave.x, leave.y, leave.z}) - std::max({enter.x, enter.y, enter.z, 0.0}));
+    return std::max(0.0, std::min({leave.x, leave.y, leave.z}) -
+                             std::max({enter.x, enter.y, enter.z, 0.0}));
 }
 
 } // namespace
 
-// One material of a constant colour: alpha = 1 - exp(-sigma L), colour = c alpha, L the ray's length in the box, for
-// any segment form and lattice. Only rounding is left: of every plane's blend, of float32 (2^-16 of sigma L: the box's
-// ends are found to 2^-22 of their terms, about 40 layers), and where a ray grazes the box.
+// One material of a constant colour: alpha = 1 - exp(-sigma L), colour = c alpha, L the ray's
+// length in the box, for any segment form and lattice. Only rounding is left: of every plane's
+// blend, of float32 (2^-16 of sigma L: the box's ends are found to 2^-22 of their terms, about 40
+// layers), and where a ray grazes the box.
 TEST_F(RendererTest, ConstantVolumeHasTheClosedFormsOpacity) {
     const double sigma = 0.0625; // exact in the table's fp16
     const glm::dvec3 color(1.0, 0.5, 0.25);
-    const Scene scene = makeScene(constantVolume({24, 17, 20}, 100), {.tf = uniformTransfer(sigma, color)});
+    const Scene scene =
+        makeScene(constantVolume({24, 17, 20}, 100), {.tf = uniformTransfer(sigma, color)});
     const View view = asymmetricView(scene);
     for (const TargetFormat target : {TargetFormat::Rgba16f, TargetFormat::Rgba8}) {
         for (const LatticeKind lattice : {LatticeKind::Planar, LatticeKind::Shells}) {
@@ -75,7 +82,8 @@ TEST_F(RendererTest, ConstantVolumeHasTheClosedFormsOpacity) {
                         const double depth = sigma * chordMm(scene, view, glm::dvec2(x, y) + 0.5);
                         const double alpha = 1.0 - std::exp(-depth);
                         inside += depth > 0.0;
-                        const glm::dvec4 off = glm::abs(picture.at({x, y}) - glm::dvec4(color * alpha, alpha));
+                        const glm::dvec4 off =
+                            glm::abs(picture.at({x, y}) - glm::dvec4(color * alpha, alpha));
                         worst = std::max({worst, off.x, off.y, off.z, off.w});
                     }
                 }
@@ -88,12 +96,13 @@ TEST_F(RendererTest, ConstantVolumeHasTheClosedFormsOpacity) {
     }
 }
 
-// The value along x is a ramp and so is its opacity's logarithm: seen along y, every column of the picture that lies
-// within the voxels' centres has the opacity of its own value.
+// The value along x is a ramp and so is its opacity's logarithm: seen along y, every column of the
+// picture that lies within the voxels' centres has the opacity of its own value.
 TEST_F(RendererTest, RampShowsEachValuesOwnOpacity) {
     const glm::ivec3 dims(33, 9, 9);
     const Volume volume = makeVolume(dims, VoxelType::U8, [](glm::ivec3 v) { return v.x; });
-    // Extinction itself is piecewise linear in the table, texel by texel: 1/512 per value and mm, exact in fp16.
+    // Extinction itself is piecewise linear in the table, texel by texel: 1/512 per value and mm,
+    // exact in fp16.
     TransferFunction tf{.name = "ramp"};
     for (int value = 0; value <= 32; ++value) {
         tf.points.push_back({double(value), glm::dvec3(1.0), 1.0 - std::exp(-value / 512.0)});
@@ -106,13 +115,14 @@ TEST_F(RendererTest, RampShowsEachValuesOwnOpacity) {
     int columns = 0;
     for (int x = 0; x < kSize.x; ++x) {
         const double tangent = glm::mix(view.frustum.left, view.frustum.right, (x + 0.5) / kSize.x);
-        const glm::dvec3 place = glm::dvec3(modelFromView * glm::dvec4(tangent * depth, 0.0, -depth, 1.0));
+        const glm::dvec3 place =
+            glm::dvec3(modelFromView * glm::dvec4(tangent * depth, 0.0, -depth, 1.0));
         if (place.x < 0.1 || place.x > 31.9) {
             continue;
         }
         ++columns;
-        // 400 radii away the rays are parallel to 1/400: over half of 9 mm they drift by at most 0.02 mm at the rim,
-        // evenly to both sides of the middle, so that the mean value stays.
+        // 400 radii away the rays are parallel to 1/400: over half of 9 mm they drift by at most
+        // 0.02 mm at the rim, evenly to both sides of the middle, so that the mean value stays.
         const double alpha = 1.0 - std::exp(-place.x / 512.0 * 9.0);
         EXPECT_NEAR(picture.at({x, kSize.y / 2}).a, alpha, 0x1p-11 + 1e-5) << x;
     }
@@ -129,8 +139,8 @@ struct LookCase {
     double meanLimit;
 };
 
-// Means: exact fields and 16-bit filters differ by float32 alone; filters of 8-bit weights and results by a fraction
-// of their step, times what the table makes of it.
+// Means: exact fields and 16-bit filters differ by float32 alone; filters of 8-bit weights and
+// results by a fraction of their step, times what the table makes of it.
 constexpr LookCase kLooks[] = {
     {"exact 8 bit", VoxelType::U8, true, Classification::Post, false, 0.0, 0.0001},
     {"exact 16 bit", VoxelType::U16, true, Classification::Post, false, 0.0, 0.0001},
@@ -148,7 +158,8 @@ TEST_F(RendererTest, EveryPixelMatchesTheFloat64Reference) {
         for (const LatticeKind lattice : {LatticeKind::Planar, LatticeKind::Shells}) {
             SCOPED_TRACE(std::string(c.name) + ", " + name(lattice));
             const glm::dvec3 spacing{random.in(0.7, 1.5), random.in(0.7, 1.5), random.in(0.7, 1.5)};
-            const glm::ivec3 dims{16 + random.below(12), 16 + random.below(12), 16 + random.below(12)};
+            const glm::ivec3 dims{16 + random.below(12), 16 + random.below(12),
+                                  16 + random.below(12)};
             const Volume volume = wavyVolume(random, dims, c.type, spacing);
             Look look{.tf = smoothTransfer(random, c.type == VoxelType::U8 ? 255.0 : 65535.0, 0.4),
                       .classification = c.classification};
@@ -163,6 +174,462 @@ TEST_F(RendererTest, EveryPixelMatchesTheFloat64Reference) {
             const FramePlan plan = decide(scene, settings);
             const View view = asymmetricView(scene);
             expectMatchesReference(draw(scene, plan, view, kSize), scene, plan, view, c.meanLimit);
+        }
+    }
+}
+
+// How layers are dealt out to planes changes the order of rounding and nothing else.
+TEST_F(RendererTest, RatioChangesNothingBeyondRounding) {
+    Random random(2);
+    const Volume volume = wavyVolume(random, {40, 37, 33}, VoxelType::U8);
+    const Scene scene = makeScene(volume, {.tf = smoothTransfer(random, 255.0, 0.2)});
+    const View view = asymmetricView(scene);
+    for (const LatticeKind lattice : {LatticeKind::Planar, LatticeKind::Shells}) {
+        const auto drawn = [&](Settings settings, FramePlan& plan) {
+            settings.lattice = lattice;
+            plan = decide(scene, settings);
+            return draw(scene, plan, view, kSize);
+        };
+        FramePlan casting;
+        const Picture cast = drawn(segments(kAll, SegmentForm::Loop), casting);
+        EXPECT_EQ(casting.planes, 1);
+        std::vector<Settings> ratios;
+        for (const int planes : {2, 7, casting.lattice.total}) {
+            ratios.push_back(segments(1, SegmentForm::Loop));
+            ratios.back().layersPerPlane.reset();
+            ratios.back().planes = planes;
+        }
+        for (const int length : kUnrollLengths) {
+            ratios.push_back(segments(length, SegmentForm::Unrolled));
+        }
+        for (const Settings& settings : ratios) {
+            FramePlan plan;
+            const Picture picture = drawn(settings, plan);
+            EXPECT_LE(largestDifference(picture, cast),
+                      blendingBound(plan) + blendingBound(casting))
+                << plan.planes << " planes, " << name(plan.variant);
+        }
+    }
+}
+
+TEST_F(RendererTest, TerminationLosesNoMoreThanItsThreshold) {
+    const Scene scene =
+        makeScene(constantVolume({30, 30, 30}, 5), {.tf = uniformTransfer(1.0, {1.0, 0.5, 0.0})});
+    const View view = asymmetricView(scene);
+    for (const SegmentForm form : {SegmentForm::Loop, SegmentForm::Unrolled}) {
+        Settings settings = segments(32, form);
+        const FramePlan all = decide(scene, settings);
+        settings.termination = 0.9;
+        const FramePlan early = decide(scene, settings);
+        ASSERT_TRUE(early.variant.terminates);
+        const double lost =
+            largestDifference(draw(scene, all, view, kSize), draw(scene, early, view, kSize));
+        EXPECT_GT(lost, 0.01); // it did leave
+        EXPECT_LE(lost, 0.1 + blendingBound(all) + blendingBound(early));
+    }
+}
+
+TEST_F(RendererTest, CompositesOverWhatIsThere) {
+    Random random(3);
+    const Volume volume = wavyVolume(random, {24, 24, 24}, VoxelType::U8);
+    const Scene scene = makeScene(volume, {.tf = smoothTransfer(random, 255.0, 0.1)});
+    const View view = asymmetricView(scene);
+    const FramePlan plan = decide(scene, segments(16, SegmentForm::Loop));
+    const Picture alone = draw(scene, plan, view, kSize);
+    const glm::vec4 background(0.25F, 0.5F, 0.75F, 1.0F);
+    const Picture over = draw(scene, plan, view, kSize, background);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < alone.pixels.size(); ++i) {
+        const glm::vec4 expected = alone.pixels[i] + (1.0F - alone.pixels[i].a) * background;
+        const glm::vec4 off = glm::abs(over.pixels[i] - expected);
+        worst = std::max({worst, double(off.x), double(off.y), double(off.z), double(off.w)});
+    }
+    EXPECT_LE(worst, 2.0 * blendingBound(plan));
+}
+
+TEST_F(RendererTest, TouchesNothingOutsideTheViewport) {
+    const Scene scene =
+        makeScene(constantVolume({16, 16, 16}, 5), {.tf = uniformTransfer(1.0, glm::dvec3(1.0))});
+    const View inside =
+        orbitView(scene, {0.0, 0.0, 0.1}, 60.0, kSize); // all planes cover the whole viewport
+    const Viewport viewport{11, 7, 40, 31};
+    for (const CompositingSpace space : {CompositingSpace::Display, CompositingSpace::Linear}) {
+        Settings settings = segments(4, SegmentForm::Loop);
+        settings.space = space;
+        const FramePlan plan = decide(scene, settings);
+        gl::ColorTargets target;
+        ASSERT_TRUE(target.resize(kSize.x, kSize.y, {GL_RGBA16F}).has_value());
+        target.begin(glm::vec4(0.5F));
+        const ViewTarget where{inside, target.framebuffer(), viewport};
+        ASSERT_TRUE(renderer().prepare(scene, plan).has_value());
+        ASSERT_TRUE(renderer().draw(scene, plan, {&where, 1}).has_value());
+        const Picture picture{kSize, target.read()};
+        for (int y = 0; y < kSize.y; ++y) {
+            for (int x = 0; x < kSize.x; ++x) {
+                const bool within = x >= 11 && x < 51 && y >= 7 && y < 38;
+                ASSERT_EQ(picture.at({x, y}) == glm::dvec4(0.5), !within) << x << ',' << y;
+            }
+        }
+    }
+}
+
+TEST_F(RendererTest, NothingVisibleLeavesTheTargetAlone) {
+    const TransferFunction nothing{.points = {{0.0, glm::dvec3(1.0), 0.0},
+                                              {200.0, glm::dvec3(1.0), 0.0},
+                                              {201.0, glm::dvec3(1.0), 1.0}}};
+    const Volume dark = makeVolume({9, 9, 9}, VoxelType::U8, [](glm::ivec3 v) { return v.x; });
+    const Scene scene = makeScene(dark, {.tf = nothing});
+    const FramePlan plan = decide(scene, segments(4, SegmentForm::Loop));
+    EXPECT_TRUE(plan.drawsNothing);
+    const Picture picture = draw(scene, plan, asymmetricView(scene), kSize, glm::vec4(0.25F));
+    EXPECT_TRUE(std::all_of(picture.pixels.begin(), picture.pixels.end(),
+                            [](glm::vec4 p) { return p == glm::vec4(0.25F); }));
+}
+
+// One renderer serves any number of scenes: what it made for one is not taken for another's.
+TEST_F(RendererTest, ScenesDoNotSeeEachOthersTextures) {
+    const auto picture = [&](int value, double extinction, SkipStructure skip) {
+        const Volume volume = makeVolume({16, 16, 16}, VoxelType::U8,
+                                         [=](glm::ivec3 v) { return v.x < value ? 0 : value; });
+        const TransferFunction tf{.points = {{1.0, glm::dvec3(1.0), 0.0},
+                                             {12.0, glm::dvec3(1.0), 1.0 - std::exp(-extinction)}}};
+        const Scene scene = makeScene(volume, {.tf = tf}); // at the same address as the one before
+        Settings settings = segments(8, SegmentForm::Loop);
+        settings.skip = skip;
+        return draw(scene, settings, asymmetricView(scene), kSize);
+    };
+    const Picture first = picture(4, 0.1, SkipStructure::Proximity);
+    const Picture volumeChanged = picture(12, 0.1, SkipStructure::Proximity);
+    const Picture tableChanged = picture(4, 0.9, SkipStructure::Proximity);
+    renderer().contextLost();
+    EXPECT_EQ(differingPixels(picture(12, 0.1, SkipStructure::None), volumeChanged), 0);
+    renderer().contextLost();
+    EXPECT_EQ(differingPixels(picture(4, 0.9, SkipStructure::None), tableChanged), 0);
+    renderer().contextLost();
+    EXPECT_EQ(differingPixels(picture(4, 0.1, SkipStructure::None), first), 0);
+    EXPECT_GT(differingPixels(first, tableChanged), 100);
+}
+
+TEST_F(RendererTest, PictureIsTheSameAfterTheContextWasLost) {
+    Random random(4);
+    const Volume volume = wavyVolume(random, {20, 20, 20}, VoxelType::U8);
+    for (const Classification classification : {Classification::Post, Classification::Pre}) {
+        const Scene scene = makeScene(volume, {.tf = smoothTransfer(random, 255.0, 0.3),
+                                               .space = CompositingSpace::Linear,
+                                               .classification = classification});
+        Settings settings = segments(16, SegmentForm::Unrolled);
+        settings.skip = SkipStructure::Proximity;
+        settings.space = CompositingSpace::Linear;
+        settings.classification = classification;
+        const Picture before = draw(scene, settings, asymmetricView(scene), kSize);
+        renderer().contextLost();
+        EXPECT_EQ(renderer().gpuMemory().volumeBytes, 0);
+        EXPECT_EQ(differingPixels(before, draw(scene, settings, asymmetricView(scene), kSize)), 0);
+        EXPECT_GT(renderer().gpuMemory().volumeBytes, 0);
+    }
+}
+
+// 16-bit voxels, whatever format the device is left with: the texels err by no more than is
+// reported, and the picture follows the texels (EveryPixelMatchesTheFloat64Reference draws 16-bit
+// volumes here too).
+TEST_F(RendererTest, SixteenBitVoxelsKeepTheReportedError) {
+    const Volume volume = makeVolume({32, 32, 32}, VoxelType::U16,
+                                     [](glm::ivec3 v) { return v.x * 2047 + v.y * 33 + v.z; });
+    const TransferFunction tf{
+        .points = {{0.0, glm::dvec3(0.0), 0.0}, {65535.0, glm::dvec3(1.0), 0.5}}};
+    for (const bool exact : {false, true}) {
+        const Scene scene = makeScene(volume, {.tf = tf}, {}, exact);
+        double worst = 0.0;
+        for (int i = 0; i < 32 * 32 * 32; ++i) {
+            const glm::ivec3 voxel(i % 32, i / 32 % 32, i / 1024);
+            worst = std::max(worst,
+                             std::abs(decodedValue(scene.texels(), voxel) - volume.valueAt(voxel)));
+        }
+        EXPECT_LE(worst, scene.texels().maxQuantisationError * (1.0 + 1e-12) + 1e-9);
+        EXPECT_EQ(scene.texels().format == TexelFormat::R16F, !exact && !formats()[1].usable);
+        if (exact || formats()[1].usable) {
+            EXPECT_EQ(scene.texels().maxQuantisationError, 0.0);
+        } else {
+            EXPECT_GT(worst, 0.0); // 16 bits do not fit
+            EXPECT_LE(worst, 65535.0 * 0x1p-12);
+        }
+        const FramePlan plan = decide(scene, segments(kAll, SegmentForm::Loop));
+        const View view = asymmetricView(scene);
+        expectMatchesReference(draw(scene, plan, view, kSize), scene, plan, view, 0.0001);
+    }
+}
+
+class CountersTest : public RendererTest {
+protected:
+    WorkCounters count(const Scene& scene, const Settings& settings, const View& view) {
+        const FramePlan plan = decide(scene, settings);
+        EXPECT_TRUE(renderer().prepare(scene, plan).has_value());
+        const ViewTarget where{view, 0, {0, 0, kSize.x, kSize.y}};
+        const Result<WorkCounters> counted = renderer().countWork(scene, plan, {&where, 1});
+        EXPECT_TRUE(counted.has_value());
+        return counted.value_or(WorkCounters{});
+    }
+    /// True where the device cannot count, after checking that it says so.
+    bool refuses(const Scene& scene, const View& view) {
+        if (caps().floatBlend) {
+            return false;
+        }
+        const FramePlan plan = decide(scene, segments(8, SegmentForm::Loop));
+        const ViewTarget where{view, 0, {0, 0, kSize.x, kSize.y}};
+        const Result<WorkCounters> counted = renderer().countWork(scene, plan, {&where, 1});
+        EXPECT_FALSE(counted.has_value());
+        EXPECT_EQ(counted.error().code, ErrorCode::DeviceUnsupported);
+        EXPECT_NE(counted.error().detail.find("GL_EXT_float_blend"), std::string::npos);
+        return true;
+    }
+};
+
+TEST_F(CountersTest, LayersAreThoseOfTheRays) {
+    const Scene scene =
+        makeScene(constantVolume({24, 24, 24}, 5), {.tf = uniformTransfer(0.1, glm::dvec3(1.0))});
+    const View view = asymmetricView(scene);
+    if (refuses(scene, view)) {
+        return;
+    }
+    for (const LatticeKind lattice : {LatticeKind::Planar, LatticeKind::Shells}) {
+        for (const SegmentCase& segment : kSegmentCases) {
+            Settings settings = segments(segment.layersPerPlane, segment.form);
+            settings.lattice = lattice;
+            const FramePlan plan = decide(scene, settings);
+            const RayFrame frame =
+                makeRayFrame(view, {0, 0, kSize.x, kSize.y}, scene.geometry(), plan.lattice);
+            std::int64_t expected = 0;
+            for (int i = 0; i < kSize.x * kSize.y; ++i) {
+                const LayerRange range = layersOf(
+                    rayAt(frame, glm::dvec2(i % kSize.x, i / kSize.x) + 0.5), plan.lattice.total);
+                expected += range.end - range.begin;
+            }
+            const WorkCounters work = count(scene, settings, view);
+            EXPECT_NEAR(double(work.layersEvaluated), double(expected), 0.005 * double(expected));
+            EXPECT_EQ(work.volumeFetches, work.layersEvaluated);
+            EXPECT_EQ(work.layersSkipped, 0);
+            EXPECT_EQ(work.skipFetches, 0);
+        }
+    }
+}
+
+// One plane is a 10-gon around the sphere's silhouette, of 10 tan(pi/10) r^2; inside the volume
+// planes cover all.
+TEST_F(CountersTest, FragmentsAreThoseOfThePolygons) {
+    const Scene scene =
+        makeScene(constantVolume({24, 24, 24}, 5), {.tf = uniformTransfer(0.1, glm::dvec3(1.0))});
+    Settings settings = segments(kAll, SegmentForm::Loop);
+    settings.tighten = false;
+    const View outside = orbitView(scene, {30.0, 10.0, 3.0}, 50.0, kSize);
+    if (refuses(scene, outside)) {
+        return;
+    }
+    const double radiusTangent = std::tan(std::asin(1.0 / 3.0));
+    const double pixelsPerTangent = kSize.y / 2.0 / outside.frustum.top;
+    const double radius = radiusTangent * pixelsPerTangent;
+    const double area = 10.0 * std::tan(0.31415926535) * radius * radius;
+    EXPECT_NEAR(double(count(scene, settings, outside).fragments), area,
+                0.01 * area); // pixels along its rim
+    settings = segments(1, SegmentForm::Loop);
+    settings.tighten = false;
+    View inside = orbitView(scene, {30.0, 10.0, 0.0}, 50.0, kSize);
+    inside.nearDepth =
+        0.9 * scene.geometry().boundingSphere().radiusMm; // cuts all but the last planes
+    const FramePlan plan = decide(scene, settings);
+    const double layers = 0.1 * scene.geometry().boundingSphere().radiusMm / plan.lattice.spacingMm;
+    const std::int64_t drawn = count(scene, settings, inside).fragments;
+    EXPECT_GE(drawn, std::int64_t(kSize.x) * kSize.y);
+    EXPECT_LE(drawn, std::int64_t(kSize.x) * kSize.y * std::int64_t(std::ceil(layers) + 1));
+}
+
+TEST_F(CountersTest, SkippingEvaluatesLessOfTheSameLayers) {
+    const Volume ball = makeVolume({32, 32, 32}, VoxelType::U8, [](glm::ivec3 v) {
+        return glm::distance(glm::dvec3(v), glm::dvec3(9.0, 15.0, 20.0)) < 5.0 ? 200.0 : 0.0;
+    });
+    const TransferFunction tf{
+        .points = {{50.0, glm::dvec3(1.0), 0.0}, {200.0, glm::dvec3(1.0), 0.5}}};
+    const Scene scene = makeScene(ball, {.tf = tf});
+    const View view = asymmetricView(scene);
+    if (refuses(scene, view)) {
+        return;
+    }
+    for (const SegmentCase& segment : kSegmentCases) {
+        Settings settings = segments(segment.layersPerPlane, segment.form);
+        settings.tighten = false;
+        const WorkCounters all = count(scene, settings, view);
+        settings.skip = SkipStructure::Proximity;
+        const WorkCounters some = count(scene, settings, view);
+        EXPECT_EQ(some.fragments, all.fragments);
+        EXPECT_EQ(some.layersEvaluated + some.layersSkipped, all.layersEvaluated);
+        EXPECT_LT(some.layersEvaluated, all.layersEvaluated / 5);
+        EXPECT_GT(some.layersEvaluated, 0);
+        EXPECT_GT(some.skipFetches, 0);
+    }
+}
+
+/// A sample of what gl::StateGuard documents.
+struct StateSample {
+    std::vector<GLint> values;
+
+    static StateSample take() {
+        StateSample sample;
+        for (const GLenum name : {GL_CURRENT_PROGRAM,
+                                  GL_VERTEX_ARRAY_BINDING,
+                                  GL_DRAW_FRAMEBUFFER_BINDING,
+                                  GL_READ_FRAMEBUFFER_BINDING,
+                                  GL_VIEWPORT,
+                                  GL_SCISSOR_BOX,
+                                  GL_BLEND_SRC_RGB,
+                                  GL_BLEND_DST_ALPHA,
+                                  GL_BLEND_EQUATION_RGB,
+                                  GL_DEPTH_WRITEMASK,
+                                  GL_ARRAY_BUFFER_BINDING,
+                                  GL_UNIFORM_BUFFER_BINDING,
+                                  GL_ACTIVE_TEXTURE,
+                                  GL_TEXTURE_BINDING_2D,
+                                  GL_TEXTURE_BINDING_3D,
+                                  GL_SAMPLER_BINDING,
+                                  GL_UNPACK_ALIGNMENT,
+                                  GL_PACK_ROW_LENGTH,
+                                  GL_COLOR_WRITEMASK,
+                                  GL_BLEND,
+                                  GL_DEPTH_TEST,
+                                  GL_CULL_FACE,
+                                  GL_SCISSOR_TEST,
+                                  GL_STENCIL_TEST,
+                                  GL_DITHER}) {
+            GLint value[4] = {};
+            gl::GetIntegerv(name, value);
+            sample.values.insert(sample.values.end(), value, value + 4);
+        }
+        return sample;
+    }
+};
+
+TEST_F(RendererTest, LeavesTheStateAsItWas) {
+    Random random(5);
+    const Volume volume = wavyVolume(random, {16, 16, 16}, VoxelType::U8);
+    const Scene scene = makeScene(volume, {.tf = smoothTransfer(random, 255.0, 0.3)});
+    gl::ColorTargets target;
+    ASSERT_TRUE(target.resize(kSize.x, kSize.y, {GL_RGBA8}).has_value());
+    target.begin();
+    gl::Texture texture = gl::Texture::make("host's", GL_TEXTURE_2D);
+    gl::ActiveTexture(GL_TEXTURE2);
+    gl::BindTexture(GL_TEXTURE_2D, texture.id());
+    gl::ActiveTexture(GL_TEXTURE1);
+    gl::BindTexture(GL_TEXTURE_2D, texture.id());
+    gl::Viewport(3, 4, 50, 40);
+    gl::Scissor(5, 6, 7, 8);
+    gl::Enable(GL_SCISSOR_TEST);
+    gl::Enable(GL_DEPTH_TEST);
+    gl::BlendFunc(GL_ZERO, GL_SRC_COLOR);
+    gl::ColorMask(GL_FALSE, GL_TRUE, GL_TRUE, GL_FALSE);
+    gl::PixelStorei(GL_UNPACK_ALIGNMENT, 2);
+    const StateSample before = StateSample::take();
+    const std::vector<ViewTarget> views = {
+        {asymmetricView(scene), target.framebuffer(), {0, 0, kSize.x, kSize.y}}};
+
+    renderer().contextLost(); // so that everything is made anew
+    Settings settings = segments(8, SegmentForm::Loop);
+    settings.space = CompositingSpace::Linear; // with a layer of our own
+    settings.skip = SkipStructure::Proximity;
+    const FramePlan plan = decide(scene, settings);
+    ASSERT_TRUE(renderer().prepare(scene, plan).has_value());
+    EXPECT_EQ(StateSample::take().values, before.values) << "prepare";
+    ASSERT_TRUE(renderer().draw(scene, plan, views).has_value());
+    EXPECT_EQ(StateSample::take().values, before.values) << "draw";
+    EXPECT_EQ(renderer().countWork(scene, plan, views).has_value(), caps().floatBlend);
+    EXPECT_EQ(StateSample::take().values, before.values) << "countWork";
+
+    Settings open = segments(1, SegmentForm::Auto);
+    open.layersPerPlane.reset();
+    const Result<std::vector<RatioMeasurement>> measured =
+        measureRatios(renderer(), scene, open, caps(), views);
+    EXPECT_EQ(StateSample::take().values, before.values) << "measureRatios";
+    gl::Disable(GL_SCISSOR_TEST);
+    gl::Disable(GL_DEPTH_TEST);
+    gl::ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    gl::ActiveTexture(GL_TEXTURE0);
+
+    ASSERT_TRUE(measured.has_value());
+    const std::vector<Ratio> candidates = ratioCandidates(open, scene.facts());
+    ASSERT_EQ(measured->size(), candidates.size());
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        EXPECT_EQ((*measured)[i].ratio, candidates[i]);
+        EXPECT_GT((*measured)[i].frameMs, 0.0);
+    }
+    const auto best =
+        std::min_element(measured->begin(), measured->end(),
+                         [](const auto& a, const auto& b) { return a.frameMs < b.frameMs; });
+    const Result<FramePlan> chosen = slabcast::plan(scene.facts(), open, caps(), *measured);
+    ASSERT_TRUE(chosen.has_value());
+    EXPECT_EQ(chosen->layersPerPlane, best->ratio.layersPerPlane);
+    EXPECT_EQ(chosen->planes, best->ratio.planes);
+}
+
+/// Names of a program's samplers, as the driver reports them.
+std::set<std::string> samplersOf(const ShaderVariant& variant) {
+    const Result<ShaderPair> text = shaderText(variant);
+    EXPECT_TRUE(text.has_value());
+    const Result<gl::Program> program =
+        gl::buildProgram(name(variant), text->vertex, text->fragment);
+    EXPECT_TRUE(program.has_value()) << (program ? "" : program.error().detail);
+    std::set<std::string> samplers;
+    GLint count = 0;
+    gl::GetProgramiv(program->id(), GL_ACTIVE_UNIFORMS, &count);
+    for (GLint i = 0; i < count; ++i) {
+        char label[128];
+        GLint size = 0;
+        GLenum type = 0;
+        gl::GetActiveUniform(program->id(), static_cast<GLuint>(i), sizeof label, nullptr, &size,
+                             &type, label);
+        if (type == GL_SAMPLER_2D || type == GL_SAMPLER_3D || type == GL_UNSIGNED_INT_SAMPLER_3D) {
+            samplers.insert(label);
+        }
+    }
+    return samplers;
+}
+
+std::size_t occurrences(const std::string& text, const std::string& word) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+        ++count;
+    }
+    return count;
+}
+
+TEST_F(RendererTest, WhatIsOffIsAbsentFromTheProgram) {
+    const ShaderVariant plain{.unroll = 4};
+    ShaderVariant skipping = plain;
+    skipping.skip = SkipStructure::Proximity;
+    ShaderVariant baked = plain;
+    baked.classification = Classification::Pre;
+    const std::set<std::string> scalars = {"volumeTexels", "transferTable"};
+    const std::set<std::string> all = {"volumeTexels", "transferTable", "freeLengths"};
+    EXPECT_EQ(samplersOf(plain), scalars);
+    EXPECT_EQ(samplersOf(skipping), all);
+    EXPECT_EQ(samplersOf(baked), std::set<std::string>{"volumeTexels"});
+
+    // What has no resource of its own leaves its words: each is there where its bit is set and
+    // nowhere else.
+    const struct {
+        const char* word;
+        bool (*on)(const ShaderVariant&);
+    } words[] = {
+        {"texelFetch(freeLengths",
+         [](const ShaderVariant& v) { return v.skip == SkipStructure::Proximity; }},
+        {"smoothstep(", [](const ShaderVariant& v) { return v.shaded; }},
+        {"texelFetch(volumeTexels", [](const ShaderVariant& v) { return v.exactField; }},
+        {"alpha > viewport.w", [](const ShaderVariant& v) { return v.terminates; }},
+        {"while (", [](const ShaderVariant& v) { return v.unroll == 0; }},
+        {"work1", [](const ShaderVariant& v) { return v.counts; }},
+    };
+    for (const ShaderVariant& variant : allVariants()) {
+        const Result<ShaderPair> text = shaderText(variant);
+        ASSERT_TRUE(text.has_value());
+        for (const auto& entry : words) {
+            EXPECT_EQ(occurrences(text->fragment, entry.word) > 0, entry.on(variant))
+                << name(variant) << ": " << entry.word;
         }
     }
 }

@@ -31,7 +31,9 @@ private:
     fs::path path_;
 };
 
-bool runs(const std::string& command) { return std::system(command.c_str()) == 0; }
+bool runs(const std::string& command) {
+    return std::system(command.c_str()) == 0;
+}
 
 std::string textOf(const std::string& file) {
     std::ostringstream text;
@@ -39,15 +41,17 @@ std::string textOf(const std::string& file) {
     return text.str();
 }
 
-/// The reference compiler's complaints about two stages, compiled and linked; empty where it has none.
+/// The reference compiler's complaints about two stages, compiled and linked; empty where it has
+/// none.
 std::string complaints(const Folder& folder, const std::string& stem, const ShaderPair& pair) {
     const std::string vertex = folder.file(stem + ".vert");
     const std::string fragment = folder.file(stem + ".frag");
     const std::string log = folder.file(stem + ".log");
     std::ofstream(vertex) << pair.vertex;
     std::ofstream(fragment) << pair.fragment;
-    return runs("glslangValidator -l '" + vertex + "' '" + fragment + "' > '" + log + "' 2>&1") ? ""
-                                                                                            : textOf(log) + "(failed)";
+    return runs("glslangValidator -l '" + vertex + "' '" + fragment + "' > '" + log + "' 2>&1")
+               ? ""
+               : textOf(log) + "(failed)";
 }
 
 ShaderPair withReplacement(ShaderPair pair, std::string ShaderPair::*stage, const std::string& what,
@@ -72,13 +76,15 @@ TEST_F(ShaderValidator, TakesEveryValidVariant) {
     ASSERT_FALSE(variants.empty());
     std::mutex oneAtATime;
     // Nearly all of a run is the tool's own start, so runs side by side are what keeps this short.
-    parallelFor(static_cast<std::int64_t>(variants.size()), 1, [&](std::int64_t begin, std::int64_t) {
-        const ShaderVariant& variant = variants[static_cast<std::size_t>(begin)];
-        const Result<ShaderPair> pair = shaderText(variant);
-        const std::string found = pair ? complaints(folder_, std::to_string(begin), *pair) : pair.error().detail;
-        const std::lock_guard lock(oneAtATime);
-        EXPECT_EQ(found, "") << name(variant);
-    });
+    parallelFor(
+        static_cast<std::int64_t>(variants.size()), 1, [&](std::int64_t begin, std::int64_t) {
+            const ShaderVariant& variant = variants[static_cast<std::size_t>(begin)];
+            const Result<ShaderPair> pair = shaderText(variant);
+            const std::string found =
+                pair ? complaints(folder_, std::to_string(begin), *pair) : pair.error().detail;
+            const std::lock_guard lock(oneAtATime);
+            EXPECT_EQ(found, "") << name(variant);
+        });
 }
 
 TEST_F(ShaderValidator, TakesTheCompositor) {

@@ -36,7 +36,8 @@ std::size_t count(const std::string& text, const std::string& what) {
 }
 
 TEST(ShaderVariant, ValidOnesAreAsManyAsTheTableSays) {
-    // 11 forms (10 lengths and the loop), skip, terminates, counts; post alone also has shaded and exactField.
+    // 11 forms (10 lengths and the loop), skip, terminates, counts; post alone also has shaded and
+    // exactField.
     const std::size_t expected = 11 * (2 * 2 * 2) * (4 + 1);
     const std::vector<ShaderVariant> variants = allVariants();
     EXPECT_EQ(variants.size(), expected);
@@ -55,19 +56,23 @@ TEST(ShaderVariant, ValidityKnowsLengthsAndBakedTexels) {
         EXPECT_EQ((ShaderVariant{.unroll = unroll}.valid()), lengths.count(unroll) == 1) << unroll;
     }
     EXPECT_FALSE((ShaderVariant{.classification = Classification::Pre, .shaded = true}.valid()));
-    EXPECT_FALSE((ShaderVariant{.classification = Classification::Pre, .exactField = true}.valid()));
+    EXPECT_FALSE(
+        (ShaderVariant{.classification = Classification::Pre, .exactField = true}.valid()));
     EXPECT_TRUE((ShaderVariant{.classification = Classification::Pre, .counts = true}.valid()));
 }
 
 TEST(ShaderVariant, NamesAreAsDocumented) {
-    EXPECT_EQ(name(ShaderVariant{.skip = SkipStructure::Proximity, .shaded = true, .terminates = true, .unroll = 16}),
-              "post+proximity+shaded+terminate/unroll16");
+    EXPECT_EQ(
+        name(ShaderVariant{
+            .skip = SkipStructure::Proximity, .shaded = true, .terminates = true, .unroll = 16}),
+        "post+proximity+shaded+terminate/unroll16");
     EXPECT_EQ(name(ShaderVariant{}), "post/loop");
 }
 
 TEST(ShaderVariant, TheShortestLengthThatHoldsASegment) {
-    const std::pair<int, int> cases[] = {{1, 1},   {2, 2},   {3, 4},   {8, 8},   {9, 12},  {13, 16}, {17, 24},
-                                         {25, 32}, {33, 48}, {49, 64}, {64, 64}, {65, 0}, {444, 0}};
+    const std::pair<int, int> cases[] = {{1, 1},   {2, 2},   {3, 4},   {8, 8},   {9, 12},
+                                         {13, 16}, {17, 24}, {25, 32}, {33, 48}, {49, 64},
+                                         {64, 64}, {65, 0},  {444, 0}};
     for (const auto& [layers, length] : cases) {
         EXPECT_EQ(unrollLengthFor(layers), length) << layers;
     }
@@ -99,9 +104,11 @@ TEST(ShaderVariant, WhatIsOffIsAbsentFromTheText) {
     for (const V& v : allVariants()) {
         const std::string text = withoutComments(shaderText(v).value().fragment);
         for (const auto& rule : rules) {
-            EXPECT_EQ(count(text, rule.token) > 0, rule.present(v)) << name(v) << ": " << rule.token;
+            EXPECT_EQ(count(text, rule.token) > 0, rule.present(v))
+                << name(v) << ": " << rule.token;
         }
-        const std::size_t loops = count(text, "while (") + count(text, "for (") + count(text, "do {");
+        const std::size_t loops =
+            count(text, "while (") + count(text, "for (") + count(text, "do {");
         EXPECT_EQ(loops > 0, v.unroll == 0) << name(v);
     }
 }
@@ -117,7 +124,8 @@ TEST(ShaderVariant, UnrolledTextsWriteOutTheirLengthOfLayers) {
     EXPECT_EQ(count(shaderText({}).value().fragment, "REPEAT_LAYERS"), 0U);
 }
 
-/// Follows the #line directives: every line must be that of the file and number which the driver will name.
+/// Follows the #line directives: every line must be that of the file and number which the driver
+/// will name.
 void expectLinesOfTheirFiles(const std::string& text, const std::string& what) {
     std::vector<std::vector<std::string>> files;
     for (const auto& [file, content] : shaderTexts()) {
@@ -154,7 +162,8 @@ TEST(ShaderText, MessagesNameTheFileAndLineOfTheSource) {
 }
 
 TEST(ShaderText, StartsWithItsVersionThenItsDefines) {
-    const std::string text = expandShader("fullscreen.vert", {{"SIZE", "3"}, {"SOME_FILE", "ray.glsl"}}).value();
+    const std::string text =
+        expandShader("fullscreen.vert", {{"SIZE", "3"}, {"SOME_FILE", "ray.glsl"}}).value();
     EXPECT_EQ(text.rfind("#version 320 es\n#define SIZE 3\n#line 1 ", 0), 0U);
     EXPECT_EQ(text.find("SOME_FILE"), std::string::npos); // a choice of file is no GLSL
 }
@@ -177,7 +186,8 @@ TEST(ShaderText, AFileThatIsNotThereIsAnErrorThatNamesIt) {
         const Result<std::string> inner = expandShader("segment.frag", defines);
         ASSERT_FALSE(inner);
         EXPECT_EQ(inner.error().code, ErrorCode::ShaderCompile);
-        EXPECT_NE(inner.error().detail.find(defines.empty() ? "COUNT_FILE" : "absent.glsl"), std::string::npos);
+        EXPECT_NE(inner.error().detail.find(defines.empty() ? "COUNT_FILE" : "absent.glsl"),
+                  std::string::npos);
     }
 }
 

@@ -16,13 +16,16 @@ constexpr glm::ivec2 kSize(48, 36);
 Volume randomVolume(Random& random) {
     const glm::ivec3 dims{random.oneOf({1, 2, 7, 16, 23, 33}), random.oneOf({1, 3, 8, 17, 32}),
                           random.oneOf({1, 5, 12, 16, 29})};
-    const glm::dvec3 spacing = random.chance(0.5) ? glm::dvec3(1.0)
-                                                  : glm::dvec3{random.in(0.3, 3.0), random.in(0.3, 3.0),
-                                                               random.in(0.3, 3.0)};
+    const glm::dvec3 spacing =
+        random.chance(0.5)
+            ? glm::dvec3(1.0)
+            : glm::dvec3{random.in(0.3, 3.0), random.in(0.3, 3.0), random.in(0.3, 3.0)};
     const VoxelType type = random.oneOf({VoxelType::U8, VoxelType::U16});
     const double highest = type == VoxelType::U8 ? 255.0 : random.oneOf({4095.0, 65535.0});
     const int kind = random.below(4);
-    const glm::dvec3 middle = glm::dvec3{random.in(0.0, 1.0), random.in(0.0, 1.0), random.in(0.0, 1.0)} * glm::dvec3(dims);
+    const glm::dvec3 middle =
+        glm::dvec3{random.in(0.0, 1.0), random.in(0.0, 1.0), random.in(0.0, 1.0)} *
+        glm::dvec3(dims);
     const double radius = random.in(1.0, 10.0);
     const int plate = random.below(dims.z);
     const auto formula = [&](glm::ivec3 v) {
@@ -35,13 +38,15 @@ Volume randomVolume(Random& random) {
         case 2: // a plate
             return v.z == plate ? random.in(0.0, 1.0) * highest : 0.0;
         default:
-            return highest * 0.5 * (1.0 + std::sin(v.x * 0.21 + radius) * std::cos(v.y * 0.17 + v.z * 0.11));
+            return highest * 0.5 *
+                   (1.0 + std::sin(v.x * 0.21 + radius) * std::cos(v.y * 0.17 + v.z * 0.11));
         }
     };
     Volume volume = makeVolume(dims, type, formula, spacing);
     if (random.chance(0.3)) {
-        volume.geometry.direction = glm::dmat3(
-            glm::rotate(glm::dmat4(1.0), random.in(0.0, 6.0), glm::normalize(glm::dvec3(1.0, random.in(-1.0, 1.0), 0.3))));
+        volume.geometry.direction =
+            glm::dmat3(glm::rotate(glm::dmat4(1.0), random.in(0.0, 6.0),
+                                   glm::normalize(glm::dvec3(1.0, random.in(-1.0, 1.0), 0.3))));
     }
     return volume;
 }
@@ -81,7 +86,8 @@ View randomView(Random& random, const Scene& scene) {
     view.frustum.left += shift;
     view.frustum.right += shift;
     if (random.chance(0.3)) {
-        view.nearDepth = random.in(0.0, camera.distanceRadii) * scene.geometry().boundingSphere().radiusMm;
+        view.nearDepth =
+            random.in(0.0, camera.distanceRadii) * scene.geometry().boundingSphere().radiusMm;
     }
     return view;
 }
@@ -113,7 +119,8 @@ protected:
         if (shaded) {
             look.shading = ShadingParameters{};
         }
-        const Scene scene = makeScene(volume, look, {.blockEdgeVoxels = random.oneOf({1, 2, 4, 8})}, exact);
+        const Scene scene =
+            makeScene(volume, look, {.blockEdgeVoxels = random.oneOf({1, 2, 4, 8})}, exact);
         Settings settings = randomSettings(random);
         settings.classification = classification;
         settings.shaded = shaded;
@@ -129,18 +136,22 @@ protected:
                     plain = picture;
                 }
                 EXPECT_EQ(differingPixels(plain, picture), 0)
-                    << "seed " << seed << ", " << name(plan.variant) << (tighten ? ", tight, " : ", ")
-                    << name(plan.lattice.kind) << ", " << plan.planes << "x" << plan.layersPerPlane << ", "
-                    << name(plan.target) << ", off by " << largestDifference(plain, picture);
+                    << "seed " << seed << ", " << name(plan.variant)
+                    << (tighten ? ", tight, " : ", ") << name(plan.lattice.kind) << ", "
+                    << plan.planes << "x" << plan.layersPerPlane << ", " << name(plan.target)
+                    << ", off by " << largestDifference(plain, picture);
             }
         }
-        return std::any_of(plain.pixels.begin(), plain.pixels.end(), [](glm::vec4 p) { return p.a > 0.0F; });
+        return std::any_of(plain.pixels.begin(), plain.pixels.end(),
+                           [](glm::vec4 p) { return p.a > 0.0F; });
     }
 
-    void drawScenes(std::uint64_t firstSeed, int count, bool exact, Classification classification, bool shaded) {
+    void drawScenes(std::uint64_t firstSeed, int count, bool exact, Classification classification,
+                    bool shaded) {
         int seen = 0;
         for (int k = 0; k < count; ++k) {
-            seen += drawAllWays(firstSeed + static_cast<std::uint64_t>(k), exact, classification, shaded);
+            seen += drawAllWays(firstSeed + static_cast<std::uint64_t>(k), exact, classification,
+                                shaded);
         }
         EXPECT_GE(seen, count / 3) << "too many of the scenes were empty to prove anything";
     }
@@ -148,11 +159,23 @@ protected:
 
 } // namespace
 
-TEST_F(SkipEqualityTest, PostClassified) { drawScenes(1000, 24, false, Classification::Post, false); }
-TEST_F(SkipEqualityTest, PostClassifiedExactField) { drawScenes(2000, 12, true, Classification::Post, false); }
-TEST_F(SkipEqualityTest, PreClassified) { drawScenes(3000, 14, false, Classification::Pre, false); }
-TEST_F(SkipEqualityTest, PreClassifiedLit) { drawScenes(4000, 6, false, Classification::Pre, true); }
-TEST_F(SkipEqualityTest, Shaded) { drawScenes(5000, 10, false, Classification::Post, true); }
-TEST_F(SkipEqualityTest, ShadedExactField) { drawScenes(6000, 6, true, Classification::Post, true); }
+TEST_F(SkipEqualityTest, PostClassified) {
+    drawScenes(1000, 24, false, Classification::Post, false);
+}
+TEST_F(SkipEqualityTest, PostClassifiedExactField) {
+    drawScenes(2000, 12, true, Classification::Post, false);
+}
+TEST_F(SkipEqualityTest, PreClassified) {
+    drawScenes(3000, 14, false, Classification::Pre, false);
+}
+TEST_F(SkipEqualityTest, PreClassifiedLit) {
+    drawScenes(4000, 6, false, Classification::Pre, true);
+}
+TEST_F(SkipEqualityTest, Shaded) {
+    drawScenes(5000, 10, false, Classification::Post, true);
+}
+TEST_F(SkipEqualityTest, ShadedExactField) {
+    drawScenes(6000, 6, true, Classification::Post, true);
+}
 
 } // namespace slabcast::test

@@ -15,7 +15,9 @@ glm::dvec3 inView(const glm::dmat4& viewFromModel, glm::dvec3 point) {
     return glm::dvec3(viewFromModel * glm::dvec4(point, 1.0));
 }
 
-void expectNear(glm::dvec3 a, glm::dvec3 b, double bound) { EXPECT_NEAR(glm::distance(a, b), 0.0, bound); }
+void expectNear(glm::dvec3 a, glm::dvec3 b, double bound) {
+    EXPECT_NEAR(glm::distance(a, b), 0.0, bound);
+}
 
 void expectNear(const Frustum& a, const Frustum& b, double bound) {
     EXPECT_NEAR(a.left, b.left, bound);
@@ -25,7 +27,8 @@ void expectNear(const Frustum& a, const Frustum& b, double bound) {
 }
 
 TEST(OrbitCamera, StandsWhereItSaysAndLooksAtTheCentre) {
-    // LPS: x to the left, y to the back, z up. The picture's right and top as directions of the patient.
+    // LPS: x to the left, y to the back, z up. The picture's right and top as directions of the
+    // patient.
     const struct {
         double azimuth, elevation;
         glm::dvec3 outward, right, top;
@@ -49,7 +52,8 @@ TEST(OrbitCamera, StandsWhereItSaysAndLooksAtTheCentre) {
 TEST(OrbitCamera, IsARigidMotionAnywhere) {
     Dice dice(1);
     for (int k = 0; k < 1000; ++k) {
-        const OrbitCamera camera{dice.uniform(-720.0, 720.0), dice.uniform(-90.0, 90.0), dice.logUniform(0.1, 1e6)};
+        const OrbitCamera camera{dice.uniform(-720.0, 720.0), dice.uniform(-90.0, 90.0),
+                                 dice.logUniform(0.1, 1e6)};
         const glm::dmat4 m = viewFromModel(camera, kSphere);
         const glm::dmat3 axes(m);
         EXPECT_NEAR(glm::determinant(axes), 1.0, 1e-14);
@@ -59,9 +63,11 @@ TEST(OrbitCamera, IsARigidMotionAnywhere) {
         }
         const double az = camera.azimuthDegrees * M_PI / 180.0;
         const double el = camera.elevationDegrees * M_PI / 180.0;
-        const glm::dvec3 outward(std::sin(az) * std::cos(el), -std::cos(az) * std::cos(el), std::sin(el));
+        const glm::dvec3 outward(std::sin(az) * std::cos(el), -std::cos(az) * std::cos(el),
+                                 std::sin(el));
         const double distance = camera.distanceRadii * 50.0;
-        expectNear(inView(m, kSphere.centreMm + distance * outward), glm::dvec3(0.0), 1e-14 * (distance + 100.0));
+        expectNear(inView(m, kSphere.centreMm + distance * outward), glm::dvec3(0.0),
+                   1e-14 * (distance + 100.0));
         EXPECT_GE((axes * glm::dvec3(0.0, 0.0, 1.0)).y, -1e-15); // z never points down the picture
     }
 }
@@ -71,8 +77,8 @@ TEST(Frustum, IsReadFromGlsMatrices) {
     for (int k = 0; k < 200; ++k) {
         const Frustum f = test::randomFrustum(dice);
         const double n = dice.logUniform(1e-3, 1e3);
-        const glm::dmat4 m =
-            glm::frustum(f.left * n, f.right * n, f.bottom * n, f.top * n, n, n * dice.logUniform(2.0, 1e5));
+        const glm::dmat4 m = glm::frustum(f.left * n, f.right * n, f.bottom * n, f.top * n, n,
+                                          n * dice.logUniform(2.0, 1e5));
         const double widest = std::max({-f.left, f.right, -f.bottom, f.top});
         expectNear(frustumOf(m), f, 1e-13 * widest);
         // The GL's own rule: the edges are what lands on -1 and +1.

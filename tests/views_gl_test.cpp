@@ -34,7 +34,8 @@ protected:
                     const FramePlan plan = decide(scene, settings);
                     SCOPED_TRACE(std::string(name(lattice)) + ", " + std::to_string(plan.planes) +
                                  (tighten ? " tight planes" : " planes"));
-                    expectMatchesReference(draw(scene, plan, view, kSize), scene, plan, view, kMeanLimit);
+                    expectMatchesReference(draw(scene, plan, view, kSize), scene, plan, view,
+                                           kMeanLimit);
                 }
             }
         }
@@ -75,13 +76,16 @@ TEST_F(ViewsTest, VolumeBehindTheEyeDrawsNothing) {
     const Scene scene = wavyScene(3);
     for (const double away : {1.01, 3.0, 50.0}) {
         View view = orbitView(scene, {15.0, 5.0, away}, 60.0, kSize);
-        view.viewFromModel = glm::rotate(glm::dmat4(1.0), glm::radians(180.0), glm::dvec3(0.0, 1.0, 0.0)) * view.viewFromModel;
+        view.viewFromModel =
+            glm::rotate(glm::dmat4(1.0), glm::radians(180.0), glm::dvec3(0.0, 1.0, 0.0)) *
+            view.viewFromModel;
         for (const LatticeKind lattice : {LatticeKind::Planar, LatticeKind::Shells}) {
             for (const bool tighten : {false, true}) {
                 Settings settings = segments(7, SegmentForm::Loop);
                 settings.lattice = lattice;
                 settings.tighten = tighten;
-                EXPECT_EQ(visiblePixels(draw(scene, settings, view, kSize)), 0) << away << " radii, " << name(lattice);
+                EXPECT_EQ(visiblePixels(draw(scene, settings, view, kSize)), 0)
+                    << away << " radii, " << name(lattice);
             }
         }
     }
@@ -117,24 +121,32 @@ TEST_F(ViewsTest, AnyRotationAndAScaledView) {
     for (std::uint64_t seed = 10; seed < 14; ++seed) {
         Random random(seed);
         const Scene scene = wavyScene(seed);
-        const glm::dvec3 turn{random.in(-180.0, 180.0), random.in(-180.0, 180.0), random.in(-180.0, 180.0)};
+        const glm::dvec3 turn{random.in(-180.0, 180.0), random.in(-180.0, 180.0),
+                              random.in(-180.0, 180.0)};
         View view = freeView(scene, glm::dvec3(0.0), turn, 50.0);
         // Metres instead of mm, as a headset's world has them.
-        const glm::dmat4 away = glm::translate(glm::dmat4(1.0), {random.in(-5.0, 5.0), random.in(-5.0, 5.0), -45.0});
-        view.viewFromModel = glm::scale(glm::dmat4(1.0), glm::dvec3(0.001)) * away * view.viewFromModel;
+        const glm::dmat4 away =
+            glm::translate(glm::dmat4(1.0), {random.in(-5.0, 5.0), random.in(-5.0, 5.0), -45.0});
+        view.viewFromModel =
+            glm::scale(glm::dmat4(1.0), glm::dvec3(0.001)) * away * view.viewFromModel;
         expectAllMatch(scene, view);
     }
 }
 
-// What is skipped or tightened away must not depend on the near plane: a layer that it cuts may be sampled before it.
+// What is skipped or tightened away must not depend on the near plane: a layer that it cuts may be
+// sampled before it.
 TEST_F(ViewsTest, TightPlanesChangeNothingAtTheNearPlane) {
     Random random(20);
-    const Volume volume = makeVolume({24, 24, 24}, VoxelType::U8, [&](glm::ivec3) { return random.chance(0.004) ? 255.0 : 0.0; });
-    const TransferFunction tf{.points = {{60.0, glm::dvec3(1.0), 0.0}, {255.0, glm::dvec3(1.0), 0.9}}};
+    const Volume volume = makeVolume({24, 24, 24}, VoxelType::U8, [&](glm::ivec3) {
+        return random.chance(0.004) ? 255.0 : 0.0;
+    });
+    const TransferFunction tf{
+        .points = {{60.0, glm::dvec3(1.0), 0.0}, {255.0, glm::dvec3(1.0), 0.9}}};
     const Scene scene = makeScene(volume, {.tf = tf}, {.blockEdgeVoxels = 1});
     for (int k = 0; k < 40; ++k) {
-        View view = freeView(scene, {random.in(-9.0, 9.0), random.in(-9.0, 9.0), random.in(-9.0, 9.0)},
-                             {random.in(0.0, 360.0), random.in(0.0, 360.0), 0.0}, 90.0);
+        View view =
+            freeView(scene, {random.in(-9.0, 9.0), random.in(-9.0, 9.0), random.in(-9.0, 9.0)},
+                     {random.in(0.0, 360.0), random.in(0.0, 360.0), 0.0}, 90.0);
         view.nearDepth = random.oneOf({0.0, 0.4, 3.0});
         Settings settings = segments(random.oneOf({1, 5, kAll}), SegmentForm::Loop);
         settings.layerSpacingVoxels = random.oneOf({0.5, 2.0, 6.0});
@@ -142,7 +154,30 @@ TEST_F(ViewsTest, TightPlanesChangeNothingAtTheNearPlane) {
         settings.tighten = false;
         const Picture plain = draw(scene, settings, view, kSize);
         settings.tighten = true;
-        EXPECT_EQ(differingPixels(plain, draw(scene, settings, view, kSize)), 0) << k << ", " << name(settings.lattice);
+        EXPECT_EQ(differingPixels(plain, draw(scene, settings, view, kSize)), 0)
+            << k << ", " << name(settings.lattice);
+    }
+}
+
+// A far volume's outline falls between pixels, and the rasteriser rounds vertices to 1/256 pixel.
+TEST_F(ViewsTest, TightPlanesLoseNoPixelOfAFarVolume) {
+    Random random(40);
+    const Scene scene = makeScene(constantVolume({128, 108, 96}, 9),
+                                  {.tf = uniformTransfer(0.25, glm::dvec3(1.0))});
+    for (int k = 0; k < 80; ++k) {
+        const OrbitCamera camera{random.oneOf({0.0, 45.0, 90.0, 77.0}),
+                                 random.oneOf({0.0, 10.0, 90.0}), random.in(20.0, 80.0)};
+        Settings settings = segments(random.oneOf({4, kAll}), SegmentForm::Loop);
+        settings.layerSpacingVoxels = random.oneOf({0.125, 0.5});
+        settings.lattice = random.oneOf({LatticeKind::Planar, LatticeKind::Shells});
+        settings.tighten = false;
+        View view = orbitView(scene, camera, 20.0, kSize);
+        view.frustum.left += random.in(-0.01, 0.01); // moves the outline through the pixels
+        const Picture plain = draw(scene, settings, view, kSize);
+        EXPECT_GT(visiblePixels(plain), 0);
+        settings.tighten = true;
+        EXPECT_EQ(differingPixels(plain, draw(scene, settings, view, kSize)), 0)
+            << k << ", " << camera.distanceRadii;
     }
 }
 
@@ -169,7 +204,8 @@ TEST_F(StereoTest, EachEyeIsItsMonoPictureBitForBit) {
             Settings settings = segments(layers, SegmentForm::Loop);
             settings.lattice = lattice;
             const FramePlan plan = decide(scene, settings);
-            const Picture mono[2] = {draw(scene, plan, eyes[0], kEye), draw(scene, plan, eyes[1], kEye)};
+            const Picture mono[2] = {draw(scene, plan, eyes[0], kEye),
+                                     draw(scene, plan, eyes[1], kEye)};
             EXPECT_GT(differingPixels(mono[0], mono[1]), 1000);
 
             gl::ColorTargets wide;
@@ -177,11 +213,14 @@ TEST_F(StereoTest, EachEyeIsItsMonoPictureBitForBit) {
             wide.begin();
             const Viewport left{0, 0, kEye.x, kEye.y};
             const Viewport right{kEye.x, 0, kEye.x, kEye.y};
-            const ViewTarget sideBySide[] = {{eyes[0], wide.framebuffer(), left}, {eyes[1], wide.framebuffer(), right}};
+            const ViewTarget sideBySide[] = {{eyes[0], wide.framebuffer(), left},
+                                             {eyes[1], wide.framebuffer(), right}};
             drawEyes(scene, plan, sideBySide);
             const Picture both{{2 * kEye.x, kEye.y}, wide.read()};
-            EXPECT_EQ(differingPixels(both.part(left), mono[0]), 0) << name(lattice) << ' ' << plan.planes;
-            EXPECT_EQ(differingPixels(both.part(right), mono[1]), 0) << name(lattice) << ' ' << plan.planes;
+            EXPECT_EQ(differingPixels(both.part(left), mono[0]), 0)
+                << name(lattice) << ' ' << plan.planes;
+            EXPECT_EQ(differingPixels(both.part(right), mono[1]), 0)
+                << name(lattice) << ' ' << plan.planes;
 
             gl::ColorTargets own[2];
             ViewTarget apart[2];
@@ -192,7 +231,8 @@ TEST_F(StereoTest, EachEyeIsItsMonoPictureBitForBit) {
             }
             drawEyes(scene, plan, apart);
             for (int eye = 0; eye < 2; ++eye) {
-                EXPECT_EQ(differingPixels({kEye, own[eye].read()}, mono[eye]), 0) << name(lattice) << ' ' << eye;
+                EXPECT_EQ(differingPixels({kEye, own[eye].read()}, mono[eye]), 0)
+                    << name(lattice) << ' ' << eye;
             }
         }
     }

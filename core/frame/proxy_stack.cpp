@@ -11,8 +11,9 @@ namespace slabcast {
 
 namespace {
 
-/// Outlines are conservative already; this absorbs the rasteriser's 1/256 pixel and float32 vertices.
+/// Outlines are conservative already; these absorb float32 vertices, and the rasteriser's snapping to 1/256 pixel.
 constexpr double kGrow = 1.0 + 1e-4;
+constexpr double kGrowPixels = 1.0 / 128.0;
 constexpr double kMacroBlockVoxels = 8.0;
 
 struct Circle {
@@ -120,9 +121,12 @@ Outline sphereOutline(const RayFrame& frame, const Frustum& frustum, const Slab&
     return clearOfView ? Outline{} : Outline{circle->centre, glm::dvec2(circle->radius * kGrow)};
 }
 
-/// Without the empty planes at both ends.
-ProxyStack trimmed(std::vector<Outline> outlines) {
+/// Without the empty planes at both ends, the others grown for the rasteriser.
+ProxyStack trimmed(std::vector<Outline> outlines, const RayFrame& frame) {
     const auto drawn = [](const Outline& o) { return !o.empty(); };
+    for (Outline& o : outlines) {
+        o.halfSize += drawn(o) ? frame.tangentPerPixel * kGrowPixels : glm::dvec2(0.0);
+    }
     const auto first = std::find_if(outlines.begin(), outlines.end(), drawn);
     const auto last = std::find_if(outlines.rbegin(), std::make_reverse_iterator(first), drawn).base();
     return {static_cast<int>(first - outlines.begin()), std::vector<Outline>(first, last)};
@@ -190,7 +194,7 @@ ProxyStack sphereStack(const RayFrame& frame, const Frustum& frustum, int planes
     for (int p = 0; p < planes; ++p) {
         outlines[p] = sphereOutline(frame, frustum, slabOf(frame, p, layersPerPlane));
     }
-    return trimmed(std::move(outlines));
+    return trimmed(std::move(outlines), frame);
 }
 
 std::vector<VisibleBox> visibleBoxes(const ProximityCloud& cloud, const VolumeGeometry& geometry,
@@ -260,7 +264,7 @@ ProxyStack tightStack(const RayFrame& frame, const Frustum& frustum, const glm::
     std::vector<Outline> outlines(planes);
     std::transform(rectangles.begin(), rectangles.end(), outlines.begin(),
                    [](const Rectangle& r) { return r.outline(); });
-    return trimmed(std::move(outlines));
+    return trimmed(std::move(outlines), frame);
 }
 
 std::vector<Outline> grouped(const ProxyStack& stack, int planesPerOutline) {

@@ -19,7 +19,8 @@ public:
           scale_(texels.valueScale / Codec::kUnitsPerSampled), bias_(texels.valueBias) {}
 
     double at(glm::dvec3 uvw) const {
-        const glm::dvec3 place = glm::clamp(uvw * glm::dvec3(dims_) - 0.5, glm::dvec3(0.0), glm::dvec3(dims_ - 1));
+        const glm::dvec3 place =
+            glm::clamp(uvw * glm::dvec3(dims_) - 0.5, glm::dvec3(0.0), glm::dvec3(dims_ - 1));
         const glm::ivec3 low(place);
         const glm::ivec3 high = glm::min(low + 1, dims_ - 1);
         const glm::dvec3 f = place - glm::dvec3(low);
@@ -44,7 +45,8 @@ private:
 /// Colour in the compositing space, not premultiplied, and extinction in 1/mm.
 glm::dvec4 materialOf(const TransferFunction& tf, CompositingSpace space, double value) {
     const TransferSample sample = evaluate(tf, value);
-    const glm::dvec3 color = space == CompositingSpace::Linear ? linearFromSrgb(sample.color) : sample.color;
+    const glm::dvec3 color =
+        space == CompositingSpace::Linear ? linearFromSrgb(sample.color) : sample.color;
     return {color, extinctionPerMm(sample.opacity, tf.opacityUnitMm)};
 }
 
@@ -124,13 +126,15 @@ std::vector<glm::dvec4> renderDiscrete(const DiscreteInput& input) {
     visitTexelFormat(input.texels->format, [&](auto codec) {
         const TrilinearField field(*input.texels, codec);
         const auto renderWith = [&](const auto& transfer) {
-            parallelFor(static_cast<std::int64_t>(pixels.size()), viewport.width, [&](std::int64_t begin, std::int64_t end) {
-                for (std::int64_t i = begin; i < end; ++i) {
-                    const glm::dvec2 corner(viewport.x + i % viewport.width, viewport.y + i / viewport.width);
-                    pixels[static_cast<std::size_t>(i)] =
-                        compositeRay(rayAt(frame, corner + 0.5), input, field, transfer, light);
-                }
-            });
+            parallelFor(static_cast<std::int64_t>(pixels.size()), viewport.width,
+                        [&](std::int64_t begin, std::int64_t end) {
+                            for (std::int64_t i = begin; i < end; ++i) {
+                                const glm::dvec2 corner(viewport.x + i % viewport.width,
+                                                        viewport.y + i / viewport.width);
+                                pixels[static_cast<std::size_t>(i)] = compositeRay(
+                                    rayAt(frame, corner + 0.5), input, field, transfer, light);
+                            }
+                        });
         };
         std::visit(renderWith, input.transfer);
     });

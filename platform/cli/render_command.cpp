@@ -44,7 +44,7 @@ Result<bool> checkOutputs(const RenderOptions& options) {
         if (std::filesystem::absolute(options.statsFile).lexically_normal() ==
             std::filesystem::absolute(options.output).lexically_normal()) {
             return fail(ErrorCode::InvalidArgument,
-                        options.output + ": is named for both picture and statistics; give --stats another name");
+                        options.statsFile + ": is named for both picture and statistics; give --stats another name");
         }
     }
     return pictureIsEncoded(options.output);

@@ -15,7 +15,8 @@
 
 namespace slabcast::test {
 
-/// Reproducible randomness: the same on every machine, whatever its standard library's distributions.
+/// Reproducible randomness: the same on every machine, whatever its standard library's
+/// distributions.
 class Dice {
 public:
     explicit Dice(std::uint64_t seed) : engine_(seed) {}
@@ -61,6 +62,7 @@ struct FrameScene {
         return {f.left + (f.right - f.left) * (fragCoord.x - viewport.x) / viewport.width,
                 f.bottom + (f.top - f.bottom) * (fragCoord.y - viewport.y) / viewport.height};
     }
+    glm::dvec2 tangentPerPixel() const { return tangentAt({1.0, 1.0}) - tangentAt({0.0, 0.0}); }
     glm::dvec2 fragCoordOf(glm::dvec2 tangent) const {
         const Frustum& f = view.frustum;
         return {viewport.x + viewport.width * (tangent.x - f.left) / (f.right - f.left),
@@ -77,7 +79,8 @@ inline VolumeGeometry randomGeometry(Dice& dice) {
     geometry.originMm = dice.inCube(-200.0, 200.0);
     geometry.direction = dice.rotation();
     if (dice.chance(0.25)) { // mirrored and sheared, as a gantry's tilt makes it
-        geometry.direction[2] = -glm::normalize(geometry.direction[2] + 0.3 * geometry.direction[1]);
+        geometry.direction[2] =
+            -glm::normalize(geometry.direction[2] + 0.3 * geometry.direction[1]);
     }
     return geometry;
 }
@@ -86,21 +89,25 @@ inline VolumeGeometry randomGeometry(Dice& dice) {
 inline Frustum randomFrustum(Dice& dice) {
     const Frustum f = symmetricFrustum(dice.logUniform(1.0, 170.0), dice.logUniform(0.5, 2.0));
     const glm::dvec2 shift(dice.uniform(-0.9, 0.9) * f.right, dice.uniform(-0.9, 0.9) * f.top);
-    return dice.chance(0.3) ? f
-                            : Frustum{f.left + shift.x, f.right + shift.x, f.bottom + shift.y, f.top + shift.y};
+    return dice.chance(0.3)
+               ? f
+               : Frustum{f.left + shift.x, f.right + shift.x, f.bottom + shift.y, f.top + shift.y};
 }
 
-/// Where the sphere's centre lies in view space: at the eye, inside, close by, far away; mostly in sight.
+/// Where the sphere's centre lies in view space: at the eye, inside, close by, far away; mostly in
+/// sight.
 inline glm::dvec3 randomPlace(Dice& dice, const Frustum& f, double radius) {
-    const double distances[] = {0.0, dice.uniform(0.0, 1.0), dice.uniform(1.0, 1.1), dice.uniform(1.0, 6.0),
-                                dice.logUniform(5.0, 1e6)};
-    const glm::dvec3 inSight = glm::normalize(
-        glm::dvec3(dice.uniform(1.3 * f.left, 1.3 * f.right), dice.uniform(1.3 * f.bottom, 1.3 * f.top), -1.0));
+    const double distances[] = {0.0, dice.uniform(0.0, 1.0), dice.uniform(1.0, 1.1),
+                                dice.uniform(1.0, 6.0), dice.logUniform(5.0, 1e6)};
+    const glm::dvec3 inSight =
+        glm::normalize(glm::dvec3(dice.uniform(1.3 * f.left, 1.3 * f.right),
+                                  dice.uniform(1.3 * f.bottom, 1.3 * f.top), -1.0));
     const double distance = distances[dice.below(5)] * radius;
     return distance * (dice.chance(0.8) ? inSight : dice.direction());
 }
 
-/// Any view that the library promises to draw: any rotation and scale, any place of the eye, near plane anywhere.
+/// Any view that the library promises to draw: any rotation and scale, any place of the eye, near
+/// plane anywhere.
 inline FrameScene randomScene(Dice& dice, int totalLayers) {
     FrameScene scene;
     scene.geometry = randomGeometry(dice);
@@ -117,7 +124,8 @@ inline FrameScene randomScene(Dice& dice, int totalLayers) {
     scene.view.nearDepth = nears[dice.below(4)];
     scene.viewport = {dice.below(200), dice.below(200), 1 + dice.below(2000), 1 + dice.below(2000)};
     scene.lattice = {dice.chance(0.5) ? LatticeKind::Planar : LatticeKind::Shells, totalLayers,
-                     2.0 * sphere.radiusMm / totalLayers * (dice.chance(0.5) ? 1.0 : dice.uniform(1.0, 1.5))};
+                     2.0 * sphere.radiusMm / totalLayers *
+                         (dice.chance(0.5) ? 1.0 : dice.uniform(1.0, 1.5))};
     return scene;
 }
 
@@ -127,21 +135,24 @@ inline glm::dvec2 randomFragCoord(Dice& dice, const FrameScene& scene) {
     const glm::dvec4 uvw(dice.inCube(0.0, 1.0), 1.0);
     const glm::dvec3 point(scene.view.viewFromModel * scene.geometry.modelFromUvw() * uvw);
     const glm::dvec2 seen = scene.fragCoordOf(glm::dvec2(point) / -point.z);
-    const bool inside = point.z < 0.0 && seen.x >= v.x && seen.x <= v.x + v.width && seen.y >= v.y &&
-                        seen.y <= v.y + v.height;
+    const bool inside = point.z < 0.0 && seen.x >= v.x && seen.x <= v.x + v.width &&
+                        seen.y >= v.y && seen.y <= v.y + v.height;
     return inside && dice.chance(0.8)
                ? seen
                : glm::dvec2(v.x + dice.uniform(0.0, v.width), v.y + dice.uniform(0.0, v.height));
 }
 
-/// Length of a pixel's ray inside the box and beyond the near plane, from the matrices alone, in extended precision.
-/// The box is grown by `growMm` on every side, or shrunk; the near plane moves likewise.
+/// Length of a pixel's ray inside the box and beyond the near plane, from the matrices alone, in
+/// extended precision. The box is grown by `growMm` on every side, or shrunk; the near plane moves
+/// likewise.
 inline double lengthInsideMm(const FrameScene& scene, glm::dvec2 fragCoord, double growMm = 0.0) {
     using Real = long double;
     using Vec3 = glm::vec<3, Real>;
     using Vec4 = glm::vec<4, Real>;
-    const glm::mat<4, 4, Real> modelFromView = glm::inverse(glm::mat<4, 4, Real>(scene.view.viewFromModel));
-    const glm::mat<4, 4, Real> uvwFromModel(glm::inverse(glm::mat<4, 4, Real>(scene.geometry.modelFromUvw())));
+    const glm::mat<4, 4, Real> modelFromView =
+        glm::inverse(glm::mat<4, 4, Real>(scene.view.viewFromModel));
+    const glm::mat<4, 4, Real> uvwFromModel(
+        glm::inverse(glm::mat<4, 4, Real>(scene.geometry.modelFromUvw())));
     const glm::dvec2 tangent = scene.tangentAt(fragCoord);
     const Vec3 perDepthMm(modelFromView * Vec4(tangent.x, tangent.y, -1.0, 0.0));
     const Vec3 eye(uvwFromModel * modelFromView * Vec4(0.0, 0.0, 0.0, 1.0));

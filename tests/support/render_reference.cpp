@@ -12,7 +12,9 @@ glm::dvec3 around(double value, double error) {
     return {value - error, value, value + error};
 }
 
-double spread(glm::dvec3 range) { return std::max(range.y - range.x, range.z - range.y); }
+double spread(glm::dvec3 range) {
+    return std::max(range.y - range.x, range.z - range.y);
+}
 
 struct TableSpread {
     glm::dvec4 value;
@@ -30,7 +32,9 @@ TableSpread lookUpAround(const TransferTable& table, double value, double error)
     };
     include(lookUp(table, value - reach));
     include(lookUp(table, value + reach));
-    const auto texelAt = [&](double v) { return std::clamp((v - table.firstValue) / texel, 0.0, last); };
+    const auto texelAt = [&](double v) {
+        return std::clamp((v - table.firstValue) / texel, 0.0, last);
+    };
     for (double k = std::ceil(texelAt(value - reach)); k <= texelAt(value + reach); k += 1.0) {
         include(glm::dvec4(table.texels[static_cast<std::size_t>(k)]));
     }
@@ -40,7 +44,8 @@ TableSpread lookUpAround(const TransferTable& table, double value, double error)
 /// Trilinear over 8 corners of any type with range.
 template <class T, class At>
 T trilinear(glm::ivec3 dims, glm::dvec3 uvw, T& range, At at) {
-    const glm::dvec3 place = glm::clamp(uvw * glm::dvec3(dims) - 0.5, glm::dvec3(0.0), glm::dvec3(dims - 1));
+    const glm::dvec3 place =
+        glm::clamp(uvw * glm::dvec3(dims) - 0.5, glm::dvec3(0.0), glm::dvec3(dims - 1));
     const glm::ivec3 low(place);
     const glm::dvec3 f = place - glm::dvec3(low);
     T sum(0.0);
@@ -89,7 +94,8 @@ struct ReferencePicture::Layer {
 
 ReferencePicture::ReferencePicture(const Scene& scene, const FramePlan& plan, const View& view,
                                    const Viewport& viewport)
-    : scene_(scene), plan_(plan), frame_(makeRayFrame(view, viewport, scene.geometry(), plan.lattice)) {
+    : scene_(scene), plan_(plan),
+      frame_(makeRayFrame(view, viewport, scene.geometry(), plan.lattice)) {
     const glm::ivec3 dims = scene.geometry().dims;
     for (int z = 0; z < dims.z; ++z) {
         for (int y = 0; y < dims.y; ++y) {
@@ -105,12 +111,15 @@ ReferencePicture::Ray ReferencePicture::rayOf(glm::dvec2 fragCoord) const {
     Ray result{.ray = rayAt(frame_, fragCoord)};
     const LatticeRay& ray = result.ray;
     const double total = plan_.lattice.total;
-    const glm::dvec3 directionTerms = glm::abs(frame_.direction0) + glm::abs(frame_.directionX) * p.x +
+    const glm::dvec3 directionTerms = glm::abs(frame_.direction0) +
+                                      glm::abs(frame_.directionX) * p.x +
                                       glm::abs(frame_.directionY) * p.y;
     const glm::dvec3 terms = glm::abs(frame_.centre0) + glm::abs(frame_.centreX) * p.x +
-                             glm::abs(frame_.centreY) * p.y + directionTerms * (frame_.spacing * total);
+                             glm::abs(frame_.centreY) * p.y +
+                             directionTerms * (frame_.spacing * total);
     result.uvwError = terms * 0x1p-22;
-    const double nearError = (std::abs(frame_.sphereCentre.z) + frame_.nearDepth) / frame_.spacing * 0x1p-21;
+    const double nearError =
+        (std::abs(frame_.sphereCentre.z) + frame_.nearDepth) / frame_.spacing * 0x1p-21;
     result.entryError = result.exitError = total * 0x1p-21 + nearError;
     for (int k = 0; k < 3; ++k) {
         const double error = result.uvwError[k] / std::max(std::abs(ray.step[k]), 1e-300);
@@ -134,14 +143,16 @@ ReferencePicture::Field ReferencePicture::fieldAt(glm::dvec3 uvw, glm::dvec3 uvw
     });
     const Texels& texels = scene_.texels();
     const double dataRange = scene_.statistics().max - scene_.statistics().min;
-    const double filter = isExact(texels.format)
-                              ? dataRange * 0x1p-21
-                              : 3.0 / 256.0 * range + texels.valueScale * sampledStep(texels.format);
+    const double filter =
+        isExact(texels.format)
+            ? dataRange * 0x1p-21
+            : 3.0 / 256.0 * range + texels.valueScale * sampledStep(texels.format);
     return {value, filter + dataRange * glm::dot(uvwError, glm::dvec3(dims))};
 }
 
 /// `lengths`: least, meant and most length of the layer inside, mm.
-ReferencePicture::Layer ReferencePicture::postClassified(glm::dvec3 uvw, const Ray& ray, glm::dvec3 lengths) const {
+ReferencePicture::Layer ReferencePicture::postClassified(glm::dvec3 uvw, const Ray& ray,
+                                                         glm::dvec3 lengths) const {
     const Field field = fieldAt(uvw, ray.uvwError);
     const TableSpread material = lookUpAround(scene_.table(), field.value, field.error);
     const glm::dvec3 extinction = glm::max(around(material.value.w, material.error.w), 0.0);
@@ -156,7 +167,8 @@ ReferencePicture::Layer ReferencePicture::postClassified(glm::dvec3 uvw, const R
 }
 
 /// Blinn-Phong with a head light, from the gradient of the field one voxel apart.
-void ReferencePicture::shade(glm::dvec3& color, double& error, glm::dvec3 uvw, const Ray& ray) const {
+void ReferencePicture::shade(glm::dvec3& color, double& error, glm::dvec3 uvw,
+                             const Ray& ray) const {
     const VolumeGeometry& geometry = scene_.geometry();
     const ShadingParameters& light = *scene_.look().shading;
     glm::dvec3 perUvw(0.0);
@@ -179,30 +191,40 @@ void ReferencePicture::shade(glm::dvec3& color, double& error, glm::dvec3 uvw, c
     }
     const glm::dvec3 toEye = -glm::normalize(modelFromUvw * ray.ray.step);
     const double facing = length > 0.0 ? std::abs(glm::dot(gradient, toEye)) / length : 0.0;
-    const double facingError = std::min(1.0, 2.0 * lengthError / std::max(length, 1e-300)) + 0x1p-20;
+    const double facingError =
+        std::min(1.0, 2.0 * lengthError / std::max(length, 1e-300)) + 0x1p-20;
     const auto lit = [&](double f) {
-        return glm::min(color * (light.ambient + light.diffuse * f) + light.specular * std::pow(f, light.shininess), 1.0);
+        return glm::min(color * (light.ambient + light.diffuse * f) +
+                            light.specular * std::pow(f, light.shininess),
+                        1.0);
     };
     // Brightness grows with `facing`, so its ends bound it; and the weight by its ends, too.
     const glm::dvec3 meant = lit(facing);
     const glm::dvec3 low = lit(std::max(0.0, facing - facingError));
     const glm::dvec3 high = lit(std::min(1.0, facing + facingError));
     const glm::dvec3 litError = glm::max(high - meant, meant - low);
-    const double weightError = std::max(shadingWeight(light, length + lengthError) - weight,
-                                        weight - shadingWeight(light, std::max(0.0, length - lengthError)));
+    const double weightError =
+        std::max(shadingWeight(light, length + lengthError) - weight,
+                 weight - shadingWeight(light, std::max(0.0, length - lengthError)));
     const double brightest = light.ambient + light.diffuse;
-    error = error * std::max(1.0, brightest) + std::max({litError.x, litError.y, litError.z}) + weightError;
+    error = error * std::max(1.0, brightest) + std::max({litError.x, litError.y, litError.z}) +
+            weightError;
     color = glm::mix(color, meant, weight);
 }
 
-ReferencePicture::Layer ReferencePicture::preClassified(glm::dvec3 uvw, const Ray& ray, glm::dvec3 lengths) const {
+ReferencePicture::Layer ReferencePicture::preClassified(glm::dvec3 uvw, const Ray& ray,
+                                                        glm::dvec3 lengths) const {
     const ClassifiedTexels& classified = *scene_.classified();
     const glm::ivec3 dims = classified.dims;
     glm::dvec4 range(0.0);
     const glm::dvec4 texel = trilinear(dims, uvw, range, [&](glm::ivec3 v) {
-        return glm::dvec4(classified.texels[(static_cast<std::size_t>(v.z) * dims.y + v.y) * dims.x + v.x]) / 255.0;
+        return glm::dvec4(
+                   classified
+                       .texels[(static_cast<std::size_t>(v.z) * dims.y + v.y) * dims.x + v.x]) /
+               255.0;
     });
-    const glm::dvec4 error = 3.0 / 256.0 * range + 1.0 / 255.0 + glm::dot(ray.uvwError, glm::dvec3(dims));
+    const glm::dvec4 error =
+        3.0 / 256.0 * range + 1.0 / 255.0 + glm::dot(ray.uvwError, glm::dvec3(dims));
     const auto opacity = [&](double a, double lengthMm) {
         return 1.0 - std::pow(1.0 - a, lengthMm / classified.referenceLengthMm);
     };
@@ -217,8 +239,10 @@ ReferencePicture::Layer ReferencePicture::preClassified(glm::dvec3 uvw, const Ra
         colorError = glm::max(colorError, color({glm::dvec3(high), a}, lengths.z) - meant);
         colorError = glm::max(colorError, meant - color({glm::dvec3(low), a}, lengths.x));
     }
-    const glm::dvec3 alpha(opacity(low.a, lengths.x), opacity(texel.a, lengths.y), opacity(high.a, lengths.z));
-    return {glm::dvec4(meant, alpha.y), std::max({colorError.x, colorError.y, colorError.z}) + 0x1p-22,
+    const glm::dvec3 alpha(opacity(low.a, lengths.x), opacity(texel.a, lengths.y),
+                           opacity(high.a, lengths.z));
+    return {glm::dvec4(meant, alpha.y),
+            std::max({colorError.x, colorError.y, colorError.z}) + 0x1p-22,
             spread(alpha) + 0x1p-22};
 }
 
@@ -238,15 +262,17 @@ PixelReference ReferencePicture::at(glm::dvec2 fragCoord) const {
     longest.entry -= ray.entryError, longest.exit += ray.exitError;
     double clearest = 1.0;
     for (int i = std::max(0, range.begin - 1); i < std::min(total, range.end + 1); ++i) {
-        const glm::dvec3 lengths = glm::dvec3(layerWeight(shortest, total, i), layerWeight(ray.ray, total, i),
-                                              layerWeight(longest, total, i)) *
-                                   ray.ray.layerLengthMm;
+        const glm::dvec3 lengths =
+            glm::dvec3(layerWeight(shortest, total, i), layerWeight(ray.ray, total, i),
+                       layerWeight(longest, total, i)) *
+            ray.ray.layerLengthMm;
         if (lengths.z == 0.0) {
             continue;
         }
         const glm::dvec3 uvw = samplePosition(ray.ray, total, i);
         const bool pre = plan_.variant.classification == Classification::Pre;
-        const Layer layer = pre ? preClassified(uvw, ray, lengths) : postClassified(uvw, ray, lengths);
+        const Layer layer =
+            pre ? preClassified(uvw, ray, lengths) : postClassified(uvw, ray, lengths);
         result.bound += clearest * (layer.colorError + layer.alphaError);
         result.color += (1.0 - result.color.a) * layer.color;
         clearest *= 1.0 - std::max(0.0, layer.color.a - layer.alphaError);
@@ -254,8 +280,8 @@ PixelReference ReferencePicture::at(glm::dvec2 fragCoord) const {
     return result;
 }
 
-void expectMatchesReference(const Picture& picture, const Scene& scene, const FramePlan& plan, const View& view,
-                            double meanLimit) {
+void expectMatchesReference(const Picture& picture, const Scene& scene, const FramePlan& plan,
+                            const View& view, double meanLimit) {
     const ReferencePicture reference(scene, plan, view, {0, 0, picture.size.x, picture.size.y});
     const double blending = blendingBound(plan);
     const double pixels = picture.size.x * picture.size.y;
@@ -277,8 +303,9 @@ void expectMatchesReference(const Picture& picture, const Scene& scene, const Fr
             if (!(excess <= worstExcess)) {
                 worstExcess = excess;
                 worst = "pixel " + std::to_string(x) + "," + std::to_string(y) + ": off by " +
-                        std::to_string(largest) + ", bound " + std::to_string(expected.bound) + " + " +
-                        std::to_string(blending) + ", alpha " + std::to_string(expected.color.a);
+                        std::to_string(largest) + ", bound " + std::to_string(expected.bound) +
+                        " + " + std::to_string(blending) + ", alpha " +
+                        std::to_string(expected.color.a);
             }
         }
     }

@@ -17,7 +17,8 @@ void appendVoxel(std::vector<std::byte>& bytes, double value) {
 
 } // namespace
 
-Volume makeVolume(glm::ivec3 dims, VoxelType type, const VoxelFormula& formula, glm::dvec3 spacingMm) {
+Volume makeVolume(glm::ivec3 dims, VoxelType type, const VoxelFormula& formula,
+                  glm::dvec3 spacingMm) {
     Volume volume;
     volume.name = "formula";
     volume.type = type;
@@ -48,7 +49,8 @@ Volume wavyVolume(Random& random, glm::ivec3 dims, VoxelType type, glm::dvec3 sp
     return makeVolume(
         dims, type,
         [=](glm::ivec3 v) {
-            const glm::dvec3 wave = glm::sin(glm::dvec3(v) * pace + glm::dvec3(v.y, v.z, v.x) * 0.07 + phase);
+            const glm::dvec3 wave =
+                glm::sin(glm::dvec3(v) * pace + glm::dvec3(v.y, v.z, v.x) * 0.07 + phase);
             return half * (1.0 + (wave.x + wave.y + wave.z) / 3.0);
         },
         spacingMm);
@@ -123,9 +125,12 @@ const std::vector<TexelFormatTest>& RenderTest::formats() {
     return *tests;
 }
 
-Scene RenderTest::makeScene(const Volume& volume, const Look& look, const SkipOptions& skip, bool exact) {
-    const TexelFormat format = chooseTexelFormat(volume.type, computeStatistics(volume), exact, formats(), nullptr);
-    Scene scene = Scene::create(volume, format, formats()[static_cast<std::size_t>(format)].maxFilterError);
+Scene RenderTest::makeScene(const Volume& volume, const Look& look, const SkipOptions& skip,
+                            bool exact) {
+    const TexelFormat format =
+        chooseTexelFormat(volume.type, computeStatistics(volume), exact, formats(), nullptr);
+    Scene scene =
+        Scene::create(volume, format, formats()[static_cast<std::size_t>(format)].maxFilterError);
     const Result<void> set = scene.setLook(look, skip, 4096);
     EXPECT_TRUE(set.has_value()) << (set ? "" : set.error().detail);
     return scene;
@@ -137,8 +142,8 @@ FramePlan RenderTest::decide(const Scene& scene, const Settings& settings) {
     return made.value_or(FramePlan{});
 }
 
-Picture RenderTest::draw(const Scene& scene, const FramePlan& plan, const View& view, glm::ivec2 size,
-                         glm::vec4 background) {
+Picture RenderTest::draw(const Scene& scene, const FramePlan& plan, const View& view,
+                         glm::ivec2 size, glm::vec4 background) {
     gl::ColorTargets target;
     const GLenum format = plan.target == TargetFormat::Rgba8 ? GL_RGBA8 : GL_RGBA16F;
     EXPECT_TRUE(target.resize(size.x, size.y, {format}).has_value());
@@ -151,7 +156,8 @@ Picture RenderTest::draw(const Scene& scene, const FramePlan& plan, const View& 
     return {size, target.read()};
 }
 
-Picture RenderTest::draw(const Scene& scene, const Settings& settings, const View& view, glm::ivec2 size) {
+Picture RenderTest::draw(const Scene& scene, const Settings& settings, const View& view,
+                         glm::ivec2 size) {
     return draw(scene, decide(scene, settings), view, size);
 }
 

@@ -18,7 +18,9 @@ namespace slabcast::test {
 class Random {
 public:
     explicit Random(std::uint64_t seed) : engine_(seed) {}
-    double in(double low, double high) { return low + (high - low) * std::ldexp(double(engine_() >> 11), -53); }
+    double in(double low, double high) {
+        return low + (high - low) * std::ldexp(double(engine_() >> 11), -53);
+    }
     int below(int count) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(count)); }
     bool chance(double share) { return in(0.0, 1.0) < share; }
     template <class T>
@@ -33,10 +35,12 @@ private:
 using VoxelFormula = std::function<double(glm::ivec3)>;
 
 /// Voxels from a formula; U8 or U16, one mm each where no spacing is given.
-Volume makeVolume(glm::ivec3 dims, VoxelType type, const VoxelFormula& formula, glm::dvec3 spacingMm = glm::dvec3(1.0));
+Volume makeVolume(glm::ivec3 dims, VoxelType type, const VoxelFormula& formula,
+                  glm::dvec3 spacingMm = glm::dvec3(1.0));
 Volume constantVolume(glm::ivec3 dims, int value);
 /// A few long waves: neighbours differ by a few steps in a hundred, so that a filter's error stays small.
-Volume wavyVolume(Random& random, glm::ivec3 dims, VoxelType type, glm::dvec3 spacingMm = glm::dvec3(1.0));
+Volume wavyVolume(Random& random, glm::ivec3 dims, VoxelType type,
+                  glm::dvec3 spacingMm = glm::dvec3(1.0));
 
 /// One material, whatever the value: an extinction and a colour.
 TransferFunction uniformTransfer(double extinctionPerMm, glm::dvec3 color);
@@ -47,7 +51,9 @@ struct Picture {
     glm::ivec2 size{0};
     std::vector<glm::vec4> pixels; // rows from the bottom up
 
-    glm::dvec4 at(glm::ivec2 p) const { return glm::dvec4(pixels[static_cast<std::size_t>(p.y) * size.x + p.x]); }
+    glm::dvec4 at(glm::ivec2 p) const {
+        return glm::dvec4(pixels[static_cast<std::size_t>(p.y) * size.x + p.x]);
+    }
     Picture part(const Viewport& viewport) const;
 };
 
@@ -67,7 +73,8 @@ protected:
     Renderer& renderer();
     const std::vector<TexelFormatTest>& formats();
 
-    Scene makeScene(const Volume& volume, const Look& look, const SkipOptions& skip = {}, bool exact = false);
+    Scene makeScene(const Volume& volume, const Look& look, const SkipOptions& skip = {},
+                    bool exact = false);
     FramePlan decide(const Scene& scene, const Settings& settings);
     /// Prepares and draws into a target of the plan's format.
     Picture draw(const Scene& scene, const FramePlan& plan, const View& view, glm::ivec2 size,
@@ -89,7 +96,8 @@ struct PixelReference {
 /// step of the format), float32 positions (2^-22 of the terms that they are summed from) and the table's own weights.
 class ReferencePicture {
 public:
-    ReferencePicture(const Scene& scene, const FramePlan& plan, const View& view, const Viewport& viewport);
+    ReferencePicture(const Scene& scene, const FramePlan& plan, const View& view,
+                     const Viewport& viewport);
     PixelReference at(glm::dvec2 fragCoord) const;
 
 private:
@@ -112,8 +120,8 @@ private:
 
 /// Every pixel within its bound and the blending's; at most 0.5 % of the pixels may graze the box. The mean
 /// difference may be `meanLimit` and half of the blending's bound: cutting digits off errs by half a step on average.
-void expectMatchesReference(const Picture& picture, const Scene& scene, const FramePlan& plan, const View& view,
-                            double meanLimit);
+void expectMatchesReference(const Picture& picture, const Scene& scene, const FramePlan& plan,
+                            const View& view, double meanLimit);
 
 /// What blending may add: every plane rounds once more. 8 bits round to the nearest step, half of 1/255; fp16's steps
 /// are 2^-11 at most below 1, and GL lets a device take either neighbour.
