@@ -175,17 +175,17 @@ def compile_times(sweep, narrow):
     for row in sweep.rows:
         name, ms = row.raw.get("variant"), number(row.raw.get("compileMs"))
         if name and ms is not None:
-            key = (row.layers, str(name), row.raw.get("skip") not in (None, "none"))
+            key = (str(name), row.raw.get("skip") not in (None, "none"))
             longest[key] = max(ms, longest.get(key, 0.0))
     if not longest:
         return None
-    ordered = sorted(longest.items(), key=lambda item: (item[0][2], item[0][0]))
+    ordered = sorted(longest.items(), key=lambda item: item[0][::-1])
     figure, axes = plt.subplots(figsize=(4.0 if narrow else 8.6, 0.23 * len(ordered) + 0.7))
-    for place, ((_, _, skips), ms) in enumerate(ordered):
+    for place, ((_, skips), ms) in enumerate(ordered):
         axes.barh(place, ms, height=0.68, color=SKIPPING[0] if skips else PLAIN[0])
         axes.annotate(f" {ms:.0f}" if ms >= 10 else f" {ms:.1f}", (ms, place), va="center",
                       fontsize=7.5, color=MUTED)
-    axes.set_yticks(range(len(ordered)), [name for (_, name, _), _ in ordered], fontsize=7.5)
+    axes.set_yticks(range(len(ordered)), [name for (name, _), _ in ordered], fontsize=7.5)
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
     axes.tick_params(axis="y", length=0)

@@ -12,7 +12,7 @@ report=$out/sweep/report.html
 
 renderOptions=(--size 1024x1024 --tf ct-bone --shade phong --camera=-32,12,2.0 --fov 34 --background 0d1014
     --layer-spacing 0.25 --planes 100 --target rgba16f)
-sweepOptions=(--size 512x512 --tf ct-bone --classify preclassified --shade phong --frames 4)
+sweepOptions=(--size 512x512 --tf ct-bone --classify preclassified --shade phong --layers "1,4,8,16,32,64,0" --frames 3)
 
 # newer TARGET INPUT...: the target exists and no input is newer.
 newer() {

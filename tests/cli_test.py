@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "support"))
@@ -47,40 +48,43 @@ class CliTest(unittest.TestCase):
         """Every file of the folder and what is in it."""
         return {path.relative_to(self.folder): path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}
 
-    def assert_one_line(self, run, status):
-        self.assertEqual(run.returncode, status, run.stderr)
-        self.assertEqual(run.stdout, "")
-        self.assertRegex(run.stderr, r"\Aslabcast[^\n]*: [^\n]+\n\Z")
-
     def succeeds(self, *arguments, notes="", **options):
         run = self.run_cli(*arguments, **options)
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertRegex(run.stderr, rf"\A{notes}\Z")
         return run.stdout
 
-    def fails(self, *arguments, cause, remedy, **options):
-        """Exit status 1, one line with cause and remedy, and every file as it was."""
+    def all_fail(self, cases, status=1, **options):
+        """Of each (arguments, cause, remedy): the exit status, and one line with both. Every file stays as it was."""
         before = self.kept()
-        run = self.run_cli(*arguments, **options)
-        self.assert_one_line(run, 1)
-        self.assertRegex(run.stderr, cause)
-        self.assertRegex(run.stderr, remedy)
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            runs = list(pool.map(lambda case: self.run_cli(*case[0], **options), cases))
+        for (arguments, cause, remedy), run in zip(cases, runs):
+            with self.subTest(arguments):
+                self.assertEqual(run.returncode, status, run.stderr)
+                self.assertEqual(run.stdout, "")
+                self.assertRegex(run.stderr, r"\Aslabcast[^\n]*: [^\n]+\n\Z")
+                self.assertRegex(run.stderr, cause)
+                self.assertRegex(run.stderr, remedy)
         self.assertEqual(self.kept(), before)
-        return run.stderr
+        return runs[0].stderr
 
-    def render_fails(self, *arguments, **options):
-        """fails(), of a render that would replace a picture and statistics."""
+    def fails(self, *arguments, cause, remedy, **options):
+        return self.all_fail([(arguments, cause, remedy)], **options)
+
+    def renders_fail(self, cases, **options):
+        """all_fail(), of renders that would replace a picture and statistics."""
         self.write("out.png", "a picture")
         self.write("out.json", "statistics")
-        return self.fails("render", "-o", "out.png", "--stats", "out.json", *QUICK, *arguments, **options)
+        render = ("render", "-o", "out.png", "--stats", "out.json", *QUICK)
+        return self.all_fail([((*render, *arguments), cause, remedy) for arguments, cause, remedy in cases], **options)
 
-    def misused(self, *arguments, cause):
-        """Exit status 2, one line with the cause and where to read on, and no file."""
-        run = self.run_cli(*arguments)
-        self.assert_one_line(run, 2)
-        self.assertRegex(run.stderr, cause)
-        self.assertRegex(run.stderr, r"'slabcast.* --help'")
-        self.assertEqual(self.kept(), {})
+    def render_fails(self, *arguments, cause, remedy, **options):
+        return self.renders_fail([(arguments, cause, remedy)], **options)
+
+    def all_misused(self, cases):
+        """Of each (arguments, cause): exit status 2, and one line with the cause and where to read on."""
+        self.all_fail([(arguments, cause, r"'slabcast.* --help'") for arguments, cause in cases], status=2)
 
     def picture(self, *arguments, **options):
         """The PNG file's bytes."""
@@ -125,38 +129,32 @@ class BadVolumes(CliTest):
             "noise.tif": (b"\x07\x13" * 300, "noise.tif", "check|export|again|convert"),
             "letter.txt": ("Dear reader", "no known format", r"--raw"),
         }
-        for name, (content, cause, remedy) in cases.items():
-            with self.subTest(name):
-                self.write(name, content)
-                line = self.render_fails(name, cause=cause, remedy=remedy)
-                self.assertIn(name, line)
+        for name, (content, _, _) in cases.items():
+            self.write(name, content)
+        self.renders_fail([((name,), rf"{name}: .*({cause})", remedy) for name, (_, cause, remedy) in cases.items()])
 
     def test_layouts_of_plain_voxels(self):
         self.write("v.raw", files.ramp()[:100])
-        for layout, cause, remedy in (
-                ("8x8x8,uint8,1x1x1", "has 100 bytes.* take 512", "correct the layout"),
-                ("4x4x4,uint8,1x1x1", "has 100 bytes.* take 64", "correct the layout"),
-                ("8x8x8", "'8x8x8'", "256x256x128"),
-                ("8x8,uint8,1x1x1", "8x8", "three|256x256x128|stack"),
-                ("8x0x8,uint8,1x1x1", "0", "at least|positive|1"),
-                ("8x8x8,uint12,1x1x1", "uint12", "uint8"),
-                ("8x8x8,uint8,1x0x1", "spacing", "correct|positive|above"),
-                ("8x8x8,uint8,1xnanx1", "spacing|nan", "correct|positive|above|number"),
-                ("2000000x2000000x2000000,uint8,1x1x1", "8000000000000000000", "correct the layout"),
-        ):
-            with self.subTest(layout):
-                self.render_fails("v.raw", "--raw", layout, cause=cause, remedy=remedy)
+        cases = (("8x8x8,uint8,1x1x1", "has 100 bytes.* take 512", "correct the layout"),
+                 ("4x4x4,uint8,1x1x1", "has 100 bytes.* take 64", "correct the layout"),
+                 ("8x8x8", "'8x8x8'", "256x256x128"),
+                 ("8x8,uint8,1x1x1", "8x8", "three|256x256x128"),
+                 ("8x0x8,uint8,1x1x1", "0", "at least"),
+                 ("8x8x8,uint12,1x1x1", "uint12", "uint8"),
+                 ("8x8x8,uint8,1x0x1", "spacing", "correct|positive"),
+                 ("8x8x8,uint8,1xnanx1", "spacing", "correct|positive"),
+                 ("2000000x2000000x2000000,uint8,1x1x1", "8000000000000000000", "correct the layout"))
+        self.renders_fail([(("v.raw", "--raw", layout), cause, remedy) for layout, cause, remedy in cases])
 
     def test_places_without_a_volume(self):
         (self.folder / "empty").mkdir()
         self.write("letters/a.txt", "Dear reader")
         self.write("v.nrrd", files.nrrd())
-        for place, cause, remedy in (("missing.nrrd", "no such file", "check the path"),
-                                     ("v.nrrd/below.nrrd", "no such file", "check the path"),
-                                     ("empty", "holds no files", "name a folder"),
-                                     ("letters", "DICOM|slices", "name|check")):
-            with self.subTest(place):
-                self.render_fails(place, cause=f"{place}.*({cause})", remedy=remedy)
+        cases = (("missing.nrrd", "no such file", "check the path"),
+                 ("v.nrrd/below.nrrd", "no such file", "check the path"),
+                 ("empty", "holds no files", "name a folder"),
+                 ("letters", "holds no DICOM images", "name a folder"))
+        self.renders_fail([((place,), f"{place}: {cause}", remedy) for place, cause, remedy in cases])
 
     def test_one_of_two_dicom_series_is_to_be_named(self):
         for series in ("1.2.3.7", "1.2.3.8"):
@@ -174,15 +172,14 @@ class BadVolumes(CliTest):
         self.render_fails("head", cause="head/1.dcm", remedy="again")
 
     def test_phantoms_that_cannot_be(self):
-        for name, cause, remedy in (("phantom:nosuch", "'nosuch'", "marschner-lobb"),
-                                    ("phantom:", "''", "marschner-lobb"),
-                                    ("phantom:shells:0", "0", "at least one"),
-                                    ("phantom:shells:-3", "'-3'", "give"),
-                                    ("phantom:shells:2x2", "'2x2'", "give"),
-                                    ("phantom:shells:many", "'many'", "give"),
-                                    ("phantom:ramp:100000", "100000", "ask for|1024")):
-            with self.subTest(name):
-                self.render_fails(name, cause=cause, remedy=remedy)
+        cases = (("phantom:nosuch", "'nosuch'", "marschner-lobb"),
+                 ("phantom:", "''", "marschner-lobb"),
+                 ("phantom:shells:0", "0", "at least one"),
+                 ("phantom:shells:-3", "'-3'", "give"),
+                 ("phantom:shells:2x2", "'2x2'", "give"),
+                 ("phantom:shells:many", "'many'", "give"),
+                 ("phantom:ramp:100000", "100000", "ask for 1024"))
+        self.renders_fail([((name,), cause, remedy) for name, cause, remedy in cases])
 
     def test_without_memory_for_the_voxels(self):
         def gibibyte():
@@ -209,16 +206,16 @@ class BadTransferFunctions(CliTest):
             "malformed": ('{"points": [{"value": 2,', "line 1", "correct the JSON"),
             "nan": ('{"points": [{"value": NaN}]}', "line 1", "correct the JSON"),
         }
-        for name, (text, cause, remedy) in cases.items():
-            with self.subTest(name):
-                self.write(name + ".json", text)
-                self.render_fails(PHANTOM, "--tf", name + ".json", cause=f"{name}.json.*({cause})", remedy=remedy)
+        for name, (text, _, _) in cases.items():
+            self.write(name + ".json", text)
+        self.renders_fail([((PHANTOM, "--tf", name + ".json"), rf"{name}\.json: .*({cause})", remedy)
+                           for name, (_, cause, remedy) in cases.items()])
 
     def test_names_that_lead_nowhere(self):
         (self.folder / "folder.json").mkdir()
-        self.render_fails(PHANTOM, "--tf", "gold", cause="'gold'", remedy="ct-bone.*json")
-        self.render_fails(PHANTOM, "--tf", "gold.json", cause="gold.json", remedy="check the path")
-        self.render_fails(PHANTOM, "--tf", "folder.json", cause="folder.json", remedy="check|name")
+        self.renders_fail([((PHANTOM, "--tf", "gold"), "'gold'", "ct-bone.*json"),
+                           ((PHANTOM, "--tf", "gold.json"), "gold.json", "check the path"),
+                           ((PHANTOM, "--tf", "folder.json"), "folder.json", "check|name")])
 
 
 class BadOutputs(CliTest):
@@ -226,18 +223,17 @@ class BadOutputs(CliTest):
         self.write("file", "kept")
         (self.folder / "folder.png").mkdir()
         (self.folder / "full.png").symlink_to("/dev/full")
-        for flag, other, name, cause, remedy in (
-                ("-o", "--stats", "no/such/p.png", "no folder no/such", "make it"),
-                ("-o", "--stats", "file/p.png", "no folder file", "make it"),
-                ("-o", "--stats", "folder.png", "not a file", "name a file"),
-                ("-o", "--stats", "full.png", "not a file", "name a file"),
-                ("-o", "--stats", "p.jpg", "png or .exr", "name that ends"),
-                ("-o", "--stats", "p", "png or .exr", "name that ends"),
-                ("--stats", "-o", "no/s.json", "no folder no", "make it"),
-                ("--stats", "-o", "folder.png", "not a file", "name a file"),
-                ("--stats", "-o", "./good.png", "both", "another name")):
-            with self.subTest(f"{flag} {name}"):
-                self.fails("render", PHANTOM, *QUICK, flag, name, other, "good.png", cause=f"{name}.*{cause}", remedy=remedy)
+        cases = (("-o", "--stats", "no/such/p.png", "no folder no/such", "make it"),
+                 ("-o", "--stats", "file/p.png", "no folder file", "make it"),
+                 ("-o", "--stats", "folder.png", "not a file", "name a file"),
+                 ("-o", "--stats", "full.png", "not a file", "name a file"),
+                 ("-o", "--stats", "p.jpg", "png or .exr", "name that ends"),
+                 ("-o", "--stats", "p", "png or .exr", "name that ends"),
+                 ("--stats", "-o", "no/s.json", "no folder no", "make it"),
+                 ("--stats", "-o", "folder.png", "not a file", "name a file"),
+                 ("--stats", "-o", "./good.png", "both", "another name"))
+        self.all_fail([(("render", PHANTOM, *QUICK, flag, name, other, "good.png"), f"{name}: .*{cause}", remedy)
+                       for flag, other, name, cause, remedy in cases])
 
     def test_disk_that_fills_up_while_writing(self):
         """A limit on file sizes stands in for it. Python ignores SIGXFSZ, and so does its child then: writing fails."""
@@ -279,37 +275,25 @@ class BadDevices(CliTest):
 class BadUsage(CliTest):
     def test_values_that_options_do_not_take(self):
         bad = {
-            "--size": ("32", "0x5", "32x", "32x32x32", "axb", "99999x2", "-4x4"),
-            "--planes": ("0", "-1", "many", "1.5", "99999999999999999999"),
-            "--layers": ("0", "x"),
-            "--frames": ("0", "2.5"),
-            "--camera": ("1,2", "nan,2,3", "1,2,inf", "1,2,-1"),
-            "--fov": ("0", "180", "nan"),
-            "--stereo": ("-1", "nan"),
-            "--background": ("red", "+12345"),
-            "--layer-spacing": ("0", "nan", "inf"),
-            "--termination": ("0", "2", "nan", "never"),
-            "--skip": ("octopus",), "--skip-block": ("3",), "--lattice": ("cubic",), "--form": ("long",),
-            "--tighten": ("yes",), "--classify": ("twice",), "--space": ("outer",), "--target": ("rgb",),
-            "--shade": ("on",), "--downsample": ("0", "1.5"), "--gpu-budget": ("0", "nan"),
+            "--size": ("32", "0x5", "32x", "32x32x32", "99999x2"),
+            "--planes": ("0", "-1", "many", "1.5", "99999999999999999999"), "--layers": ("0",), "--frames": ("0",),
+            "--camera": ("1,2", "nan,2,3", "1,2,inf", "1,2,-1"), "--fov": ("180", "nan"), "--stereo": ("-1", "nan"),
+            "--background": ("red", "+12345"), "--layer-spacing": ("0", "nan"), "--termination": ("0", "2", "nan"),
+            "--skip": ("octopus",), "--skip-block": ("3",), "--downsample": ("0",), "--gpu-budget": ("nan",),
         }
-        for flag, words in bad.items():
-            for word in words:
-                with self.subTest(f"{flag} {word}"):
-                    self.misused("render", PHANTOM, "-o", "p.png", flag, word, cause=f"{flag}: '{re.escape(word)}' is not .+")
+        self.all_misused([(("render", PHANTOM, "-o", "p.png", flag, word), f"{flag}: '{re.escape(word)}' is not .+")
+                          for flag, words in bad.items() for word in words])
 
     def test_commands_that_are_incomplete_or_unknown(self):
-        for arguments, cause in ((("render", PHANTOM), "--output is required"),
-                                 (("render", "-o", "p.png"), "VOLUME is required"),
-                                 (("render", PHANTOM, "-o"), "--output|-o"),
-                                 (("render", PHANTOM, "-o", "p.png", "--colour"), "--colour"),
-                                 (("sweep", PHANTOM), "--out is required"),
-                                 (("sweep", PHANTOM, "--out", "d", "--layers", "1,x"), "--layers: '1,x'"),
-                                 (("paint",), "paint"),
-                                 (("info",), "VOLUME is required"),
-                                 (("device", "2"), "2")):
-            with self.subTest(arguments):
-                self.misused(*arguments, cause=cause)
+        self.all_misused(((("render", PHANTOM), "--output is required"),
+                          (("render", "-o", "p.png"), "VOLUME is required"),
+                          (("render", PHANTOM, "-o"), "--output"),
+                          (("render", PHANTOM, "-o", "p.png", "--colour"), "--colour"),
+                          (("sweep", PHANTOM), "--out is required"),
+                          (("sweep", PHANTOM, "--out", "d", "--layers", "1,x"), "--layers: '1,x'"),
+                          (("paint",), "paint"),
+                          (("info",), "VOLUME is required"),
+                          (("device", "2"), "2")))
 
     def test_no_command_answers_with_the_help(self):
         run = self.run_cli()
