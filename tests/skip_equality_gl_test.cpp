@@ -11,6 +11,7 @@ namespace slabcast::test {
 namespace {
 
 constexpr glm::ivec2 kSize(48, 36);
+constexpr int kAll = 1 << 20; // more layers than there are: one plane
 
 /// Most of it empty, as volumes are: clusters of values in air, single spikes, thin plates or waves.
 Volume randomVolume(Random& random) {
@@ -95,10 +96,10 @@ View randomView(Random& random, const Scene& scene) {
 Settings randomSettings(Random& random) {
     Settings settings;
     settings.form = random.oneOf({SegmentForm::Unrolled, SegmentForm::Loop});
-    settings.layersPerPlane = random.oneOf({1, 8, 16});
-    if (settings.form == SegmentForm::Loop && random.chance(0.3)) {
-        settings.layersPerPlane = 1 << 20; // all of them: one plane
-    }
+    // Leaps stay within a segment: long ones show a leap that goes too far.
+    settings.layersPerPlane = settings.form == SegmentForm::Unrolled
+                                  ? random.oneOf({1, 16, 32})
+                                  : random.oneOf({1, 16, kAll, kAll});
     settings.layerSpacingVoxels = random.oneOf({0.125, 0.5, 1.0, 4.0});
     settings.lattice = random.oneOf({LatticeKind::Planar, LatticeKind::Shells});
     settings.target = random.oneOf({TargetFormat::Rgba8, TargetFormat::Rgba16f});
@@ -158,6 +159,27 @@ protected:
 };
 
 } // namespace
+
+// Single visible voxels far apart: every leap ends next to something that it must not miss.
+TEST_F(SkipEqualityTest, SparseVoxels) {
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        Random random(seed);
+        const auto spike = [&](glm::ivec3) { return random.chance(0.0006) ? 255.0 : 0.0; };
+        const Volume volume = makeVolume({40, 37, 33}, VoxelType::U8, spike, {1.0, 1.5, 0.8});
+        const TransferFunction tf{
+            .points = {{4.0, glm::dvec3(0.2), 0.0}, {255.0, glm::dvec3(1.0), 0.7}}};
+        const Scene scene =
+            makeScene(volume, {.tf = tf}, {.blockEdgeVoxels = random.oneOf({1, 2, 4})});
+        Settings settings = segments(kAll, SegmentForm::Loop);
+        settings.layerSpacingVoxels = random.oneOf({0.25, 0.5, 1.0});
+        settings.lattice = random.oneOf({LatticeKind::Planar, LatticeKind::Shells});
+        const OrbitCamera camera{random.in(0.0, 360.0), random.in(-90.0, 90.0), 1.6};
+        const View view = orbitView(scene, camera, 60.0, kSize);
+        const Picture plain = draw(scene, settings, view, kSize);
+        settings.skip = SkipStructure::Proximity;
+        EXPECT_EQ(differingPixels(plain, draw(scene, settings, view, kSize)), 0) << "seed " << seed;
+    }
+}
 
 TEST_F(SkipEqualityTest, PostClassified) {
     drawScenes(1000, 24, false, Classification::Post, false);
