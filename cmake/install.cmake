@@ -21,6 +21,9 @@ foreach(component IN ITEMS core egl io)
         FILES_MATCHING PATTERN "*.h" PATTERN "itk_*" EXCLUDE) # what includes ITK stays inside
 endforeach()
 
+if(TARGET slabcast_images)
+    install(TARGETS slabcast_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/slabcast)
+endif()
 if(TARGET slabcast)
     install(TARGETS slabcast RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
     install(PROGRAMS perf/report.py DESTINATION ${CMAKE_INSTALL_DATADIR}/slabcast/perf)

@@ -20,7 +20,8 @@ build nlohmann-json3-dev     JSON: transfer functions, statistics
 build libfmt-dev             text formatting
 build zlib1g-dev             reads the headers of compressed volumes
 build libinsighttoolkit5-dev reads volumes: DICOM, NIfTI, NRRD, MetaImage
-build libopenimageio-dev     writes PNG and EXR
+build libpng-dev             writes PNG
+build libopenimageio-dev     reads image stacks, writes EXR
 build python3-matplotlib     plots of the reports
 test  libgtest-dev           unit tests
 test  librapidcheck-dev      property tests

@@ -15,20 +15,20 @@ using test::constantScene;
 using test::SkipScene;
 
 /// The rule as the words have it: some texel with alpha between the cell's ends, one texel of grace
-/// on each side. `slack` moves the ends apart, in texels.
+/// on each side; what lies outside the table reads its end texel. `slack` moves the ends apart, in
+/// texels.
 bool visibleByTheWords(const SkipScene& scene, int minCode, int maxCode, double error,
                        double slack) {
     const TransferTable& table = scene.table;
     const double last = double(table.texels.size()) - 1.0;
     const auto texelOf = [&](double sampled) {
         const double value = scene.texels.valueScale * sampled + scene.texels.valueBias;
-        const double x = (value - table.firstValue) / (table.lastValue - table.firstValue) * last;
-        return std::clamp(x, 0.0, last);
+        return (value - table.firstValue) / (table.lastValue - table.firstValue) * last;
     };
     const double one = texelOf(scene.codes.lowSampled[minCode] - error);
     const double other = texelOf(scene.codes.highSampled[maxCode] + error);
-    const double from = std::floor(std::min(one, other) - slack) - 1.0;
-    const double to = std::ceil(std::max(one, other) + slack) + 1.0;
+    const double from = std::clamp(std::floor(std::min(one, other) - slack) - 1.0, 0.0, last);
+    const double to = std::clamp(std::ceil(std::max(one, other) + slack) + 1.0, 0.0, last);
     for (int k = 0; k < int(table.texels.size()); ++k) {
         if (table.texels[k].a > 0.0F && k >= from && k <= to) {
             return true;

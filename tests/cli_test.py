@@ -8,7 +8,6 @@ import csv
 import json
 import os
 import re
-import resource
 import shutil
 import struct
 import subprocess
@@ -24,7 +23,8 @@ import cli_files as files  # noqa: E402
 SLABCAST = None  # the program, from the command line
 REPORT = Path(__file__).resolve().parent.parent / "perf" / "report.py"
 PHANTOM = "phantom:shells:24"
-QUICK = ("--size", "32x32", "--layers", "16", "--planes", "4")  # a given ratio is not measured
+RATIO = ("--layers", "16", "--planes", "4")  # what is given is not measured
+QUICK = ("--size", "32x32", *RATIO)
 COMMANDS = ("render", "sweep", "info", "device")
 POINT = {"value": 0, "color": [1, 1, 1], "opacity": 0.5}
 
@@ -40,9 +40,11 @@ class CliTest(unittest.TestCase):
         path.write_bytes(content.encode() if isinstance(content, str) else content)
         return name
 
-    def run_cli(self, *arguments, env=None, **options):
-        return subprocess.run([SLABCAST, *map(str, arguments)], cwd=self.folder, env={**os.environ, **(env or {})},
-                              capture_output=True, text=True, timeout=120, **options)
+    def run_cli(self, *arguments, env=None, limit=""):
+        """`limit`: shell commands that narrow what the process may do."""
+        shell = ("sh", "-c", limit + '; exec "$0" "$@"') if limit else ()
+        return subprocess.run([*shell, SLABCAST, *map(str, arguments)], cwd=self.folder, text=True, timeout=120,
+                              env={**os.environ, **(env or {})}, capture_output=True)
 
     def kept(self):
         """Every file of the folder and what is in it."""
@@ -126,7 +128,7 @@ class BadVolumes(CliTest):
             "huger.nrrd": (files.nrrd("9" * 30 + " 2 2"), "axis 0 has 9223372036854775807", "check the file's header"),
             "noise.nrrd": (b"\x07\x13" * 300, "NRRD", "check|export|again"),
             "empty.nii.gz": (b"", "NIfTI|empty|header", "check|export|again"),
-            "noise.tif": (b"\x07\x13" * 300, "noise.tif", "check|export|again|convert"),
+            "noise.tif": (b"\x07\x13" * 300, "TIFF", "check"),
             "letter.txt": ("Dear reader", "no known format", r"--raw"),
         }
         for name, (content, _, _) in cases.items():
@@ -182,9 +184,7 @@ class BadVolumes(CliTest):
         self.renders_fail([((name,), cause, remedy) for name, cause, remedy in cases])
 
     def test_without_memory_for_the_voxels(self):
-        def gibibyte():
-            resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
-        self.fails("info", "phantom:ramp:1024", cause="memory|bad_alloc", remedy="--downsample|smaller", preexec_fn=gibibyte)
+        self.fails("info", "phantom:ramp:1024", cause="out of memory", remedy="smaller", limit="ulimit -v 1048576")
 
 
 class BadTransferFunctions(CliTest):
@@ -236,17 +236,13 @@ class BadOutputs(CliTest):
                        for flag, other, name, cause, remedy in cases])
 
     def test_disk_that_fills_up_while_writing(self):
-        """A limit on file sizes stands in for it. Python ignores SIGXFSZ, and so does its child then: writing fails."""
-        def kibibyte():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (1024, 1024))
-        noisy = ("render", "phantom:vessels:32", "--size", "200x200", "--layers", "16", "--planes", "4")
-        for name in ("p.png", "p.exr"):
-            for old in (None, "an older picture"):
-                with self.subTest(f"{name} over {old}"):
-                    if old:
-                        self.write(name, old)
-                    self.fails(*noisy, "-o", name, cause=f"{name}.*(too large|write)", remedy="space left",
-                               preexec_fn=kibibyte, restore_signals=False, env={"MESA_SHADER_CACHE_DISABLE": "true"})
+        """A limit on the size of files stands in for it: writing fails at one block, once its signal is ignored."""
+        noisy = ("render", "phantom:vessels:32", "--size", "200x200", *RATIO)
+        self.write("old.png", "an older picture")
+        self.write("old.exr", "an older picture")
+        self.all_fail([((*noisy, "-o", name), f"{name}: .*(too large|write)", "space left")
+                       for name in ("new.png", "old.png", "new.exr", "old.exr")],
+                      limit="ulimit -f 1; trap '' XFSZ", env={"MESA_SHADER_CACHE_DISABLE": "true"})
 
 
 class BadDevices(CliTest):
@@ -275,8 +271,8 @@ class BadDevices(CliTest):
 class BadUsage(CliTest):
     def test_values_that_options_do_not_take(self):
         bad = {
-            "--size": ("32", "0x5", "32x", "32x32x32", "99999x2"),
-            "--planes": ("0", "-1", "many", "1.5", "99999999999999999999"), "--layers": ("0",), "--frames": ("0",),
+            "--size": ("32", "0x5", "32x32x32", "99999x2"),
+            "--planes": ("-1", "many", "1.5", "99999999999999999999"), "--layers": ("0",), "--frames": ("0",),
             "--camera": ("1,2", "nan,2,3", "1,2,inf", "1,2,-1"), "--fov": ("180", "nan"), "--stereo": ("-1", "nan"),
             "--background": ("red", "+12345"), "--layer-spacing": ("0", "nan"), "--termination": ("0", "2", "nan"),
             "--skip": ("octopus",), "--skip-block": ("3",), "--downsample": ("0",), "--gpu-budget": ("nan",),
@@ -323,20 +319,21 @@ class Help(CliTest):
 
 class Pictures(CliTest):
     def test_png_is_of_the_size_and_shows_something(self):
-        png = files.Png(self.picture(PHANTOM, "--size", "48x32", "--layers", "16", "--planes", "4"))
+        png = files.Png(self.picture(PHANTOM, "--size", "48x32", *RATIO))
         self.assertEqual((png.width, png.height, png.channels), (48, 32, 3))
         self.assertEqual(png.pixel(0, 0), (0, 0, 0))
         self.assertGreater(max(png.pixel(24, 16)), 10)
 
     def test_exr_is_of_the_size(self):
-        self.succeeds("render", PHANTOM, "-o", "p.exr", "--size", "48x32", "--layers", "16", "--planes", "4")
+        self.succeeds("render", PHANTOM, "-o", "p.exr", "--size", "48x32", *RATIO)
         header = files.exr_header((self.folder / "p.exr").read_bytes())
         self.assertEqual(struct.unpack("<4i", header["dataWindow"]), (0, 0, 47, 31))
 
     def test_background_comes_back_as_it_was_given(self):
         for space in ("display", "linear"):
             with self.subTest(space):
-                png = files.Png(self.picture(PHANTOM, *QUICK, "--background", "336699", "--space", space, "--target", "rgba16f"))
+                png = files.Png(self.picture(PHANTOM, *QUICK, "--background", "336699", "--space", space,
+                                             "--target", "rgba16f"))
                 for got, given in zip(png.pixel(0, 0), (0x33, 0x66, 0x99)):
                     self.assertAlmostEqual(got, given, delta=1)  # half floats hold 11 bits
 
@@ -348,7 +345,7 @@ class Pictures(CliTest):
 
     def test_stereo_draws_two_eyes_side_by_side(self):
         def halves(ipd):
-            png = files.Png(self.picture(PHANTOM, "--size", "64x32", "--layers", "16", "--planes", "4", "--stereo", ipd))
+            png = files.Png(self.picture(PHANTOM, "--size", "64x32", *RATIO, "--stereo", ipd))
             self.assertEqual((png.width, png.height), (64, 32))
             return [[row[eye * 96:eye * 96 + 96] for row in png.rows] for eye in range(2)]
         left, right = halves("8")
@@ -422,7 +419,8 @@ class Statistics(CliTest):
         stats = self.stats(PHANTOM, *QUICK)
         for part, keys in self.KEYS.items():
             self.assertLessEqual(keys, set(stats[part]), part)
-        self.assertEqual((stats["plan"]["planes"], stats["plan"]["layersPerPlane"], stats["plan"]["layers"]), (4, 4, 16))
+        plan = stats["plan"]
+        self.assertEqual((plan["planes"], plan["layersPerPlane"], plan["layers"]), (4, 4, 16))
         self.assertEqual(stats["volume"]["dims"], [24, 24, 24])
         self.assertEqual(stats["volume"]["bytes"], 24 ** 3)
         times = stats["frame_ms"]
@@ -440,7 +438,8 @@ class Statistics(CliTest):
         text = self.succeeds("render", PHANTOM, "-o", "p.png", "--size", "64x64", "--layers", "16", "--explain")
         for what in ("texels", "layers 16", "ratio", "skip", "classification"):
             self.assertRegex(text, rf"(?m)^{what}.*: .+")
-        chosen, measured = re.search(r"(?m)^ratio ([^:]+): fastest of those measured on this device: (.+)$", text).groups()
+        line = re.search(r"(?m)^ratio ([^:]+): fastest of those measured on this device: (.+)$", text)
+        chosen, measured = line.groups()
         times = {name: float(ms) for name, ms in re.findall(r"(\d+x\d+ \w+) ([\d.e-]+) ms", measured)}
         self.assertGreaterEqual(len(times), 3)
         self.assertEqual(times[chosen], min(times.values()))

@@ -180,10 +180,10 @@ TEST(FramePlan, TheRatioNeverMovesTheLattice) {
             dealt.planes = planes;
             const FramePlan p = planned(dealt);
             EXPECT_EQ(p.lattice, lattice) << planes;
-            EXPECT_EQ(p.planes, std::min(planes, lattice.total));
-            // As few layers on each as will do: every layer lies on exactly one plane, the one of
-            // its quotient.
-            EXPECT_LT(std::int64_t{p.planes} * (p.layersPerPlane - 1), lattice.total) << planes;
+            EXPECT_LE(p.planes, std::min(planes, lattice.total));
+            // Every layer lies on exactly one plane, the one of its quotient, and no plane is without.
+            EXPECT_GE(std::int64_t{p.planes} * p.layersPerPlane, lattice.total) << planes;
+            EXPECT_LT(std::int64_t{p.planes - 1} * p.layersPerPlane, lattice.total) << planes;
         }
     }
 }

@@ -125,6 +125,9 @@ protected:
         Settings settings = randomSettings(random);
         settings.classification = classification;
         settings.shaded = shaded;
+        if (shaded) { // seven fields per sample
+            settings.layerSpacingVoxels = std::max(settings.layerSpacingVoxels, 0.5);
+        }
         const View view = randomView(random, scene);
         Picture plain;
         for (const bool tighten : {false, true}) {
@@ -160,24 +163,26 @@ protected:
 
 } // namespace
 
-// Single visible voxels far apart: every leap ends next to something that it must not miss.
+// Single visible voxels far apart: every leap ends next to something that it must not miss. Leaps
+// that are two voxels too long show here; the first voxel is what blocks are grown by.
 TEST_F(SkipEqualityTest, SparseVoxels) {
-    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    constexpr glm::ivec2 size(160, 120);
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
         Random random(seed);
-        const auto spike = [&](glm::ivec3) { return random.chance(0.0006) ? 255.0 : 0.0; };
+        const auto spike = [&](glm::ivec3) { return random.chance(0.002) ? 255.0 : 0.0; };
         const Volume volume = makeVolume({40, 37, 33}, VoxelType::U8, spike, {1.0, 1.5, 0.8});
         const TransferFunction tf{
             .points = {{4.0, glm::dvec3(0.2), 0.0}, {255.0, glm::dvec3(1.0), 0.7}}};
         const Scene scene =
-            makeScene(volume, {.tf = tf}, {.blockEdgeVoxels = random.oneOf({1, 2, 4})});
+            makeScene(volume, {.tf = tf}, {.blockEdgeVoxels = random.oneOf({1, 1, 2, 4})});
         Settings settings = segments(kAll, SegmentForm::Loop);
         settings.layerSpacingVoxels = random.oneOf({0.25, 0.5, 1.0});
         settings.lattice = random.oneOf({LatticeKind::Planar, LatticeKind::Shells});
         const OrbitCamera camera{random.in(0.0, 360.0), random.in(-90.0, 90.0), 1.6};
-        const View view = orbitView(scene, camera, 60.0, kSize);
-        const Picture plain = draw(scene, settings, view, kSize);
+        const View view = orbitView(scene, camera, 60.0, size);
+        const Picture plain = draw(scene, settings, view, size);
         settings.skip = SkipStructure::Proximity;
-        EXPECT_EQ(differingPixels(plain, draw(scene, settings, view, kSize)), 0) << "seed " << seed;
+        EXPECT_EQ(differingPixels(plain, draw(scene, settings, view, size)), 0) << "seed " << seed;
     }
 }
 
@@ -197,7 +202,7 @@ TEST_F(SkipEqualityTest, Shaded) {
     drawScenes(5000, 8, false, Classification::Post, true);
 }
 TEST_F(SkipEqualityTest, ShadedExactField) {
-    drawScenes(6000, 6, true, Classification::Post, true);
+    drawScenes(6000, 5, true, Classification::Post, true);
 }
 
 } // namespace slabcast::test

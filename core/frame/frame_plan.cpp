@@ -87,37 +87,43 @@ struct Planner {
         return unrollLengthFor(layersPerPlane) == 0 || caps.isSoftware ? SegmentForm::Loop : SegmentForm::Unrolled;
     }
 
+    Ratio dealtOut(int layersPerPlane, SegmentForm form) const {
+        const int length = std::min(layersPerPlane, plan.lattice.total);
+        return {planesFor(plan.lattice.total, length), length, form};
+    }
+
     Ratio chooseRatio(std::span<const RatioMeasurement> measurements) {
-        const int total = plan.lattice.total;
         if (settings.planes || settings.layersPerPlane) {
-            const int wanted = settings.planes ? planesFor(total, std::min(*settings.planes, total))
-                                               : std::min(*settings.layersPerPlane, total);
-            const int planes = settings.planes ? std::min(*settings.planes, total) : planesFor(total, wanted);
-            const Ratio ratio{planes, wanted, formFor(wanted)};
-            because("ratio " + name(ratio), "asked for");
+            const int length = settings.layersPerPlane ? *settings.layersPerPlane
+                                                       : planesFor(plan.lattice.total, *settings.planes);
+            const Ratio ratio = dealtOut(length, formFor(length));
+            because("ratio " + name(ratio), settings.planes && ratio.planes < *settings.planes
+                                                ? "fewer planes than asked for hold all layers"
+                                                : "asked for");
             return ratio;
         }
         const auto best = std::min_element(measurements.begin(), measurements.end(),
                                            [](const auto& a, const auto& b) { return a.frameMs < b.frameMs; });
-        if (best != measurements.end()) {
-            std::string all;
-            for (const RatioMeasurement& m : measurements) {
-                all += (all.empty() ? "" : ", ") + name(m.ratio) + " " + number(m.frameMs) + " ms";
-            }
-            // Dealt out anew: what was measured may have been of another number of layers.
-            const int layersPerPlane = std::min(best->ratio.layersPerPlane, total);
-            const Ratio ratio{planesFor(total, layersPerPlane), layersPerPlane, best->ratio.form};
-            because("ratio " + name(ratio), "fastest of those measured on this device: " + all);
+        if (best == measurements.end()) {
+            const Ratio ratio = dealtOut(kUnmeasuredLayersPerPlane, formFor(kUnmeasuredLayersPerPlane));
+            because("ratio " + name(ratio), "nothing was measured on this device: a middle ratio");
             return ratio;
         }
-        const int layersPerPlane = std::min(kUnmeasuredLayersPerPlane, total);
-        const Ratio ratio{planesFor(total, layersPerPlane), layersPerPlane, formFor(layersPerPlane)};
-        because("ratio " + name(ratio), "nothing was measured on this device: a middle ratio");
+        std::string all;
+        for (const RatioMeasurement& m : measurements) {
+            all += (all.empty() ? "" : ", ") + name(m.ratio) + " " + number(m.frameMs) + " ms";
+        }
+        // Dealt out anew: what was measured may have been of another number of layers.
+        const Ratio ratio = dealtOut(best->ratio.layersPerPlane, best->ratio.form);
+        because("ratio " + name(ratio), "fastest of those measured on this device: " + all);
         return ratio;
     }
 
     void chooseSkip() {
-        if (settings.skip) {
+        if (!facts.occupancyKnown) {
+            plan.variant.skip = SkipStructure::None;
+            because("skip none", "no skip structure was built for this look");
+        } else if (settings.skip) {
             plan.variant.skip = *settings.skip;
             because(std::string("skip ") + name(*settings.skip), "asked for");
         } else if (facts.occupiedFraction > kWorthSkipping) {
@@ -233,10 +239,10 @@ Result<FramePlan> plan(const SceneFacts& facts, const Settings& settings, const 
     }
     planner.chooseSkip();
     planner.chooseTermination();
-    result.tighten = settings.tighten;
-    planner.because(settings.tighten ? "tight planes" : "10-gons",
-                    settings.tighten ? "each plane is the rectangle around what is visible in its slab"
-                                     : "each plane covers the bounding sphere's slice");
+    result.tighten = settings.tighten && facts.occupancyKnown;
+    planner.because(result.tighten ? "tight planes" : "10-gons",
+                    result.tighten ? "each plane is the rectangle around what is visible in its slab"
+                                   : "each plane covers the bounding sphere's slice");
     planner.chooseTarget();
     result.drawsNothing = !facts.anythingVisible;
     if (result.drawsNothing) {

@@ -42,6 +42,7 @@ struct SceneFacts {
     double smallestVoxelEdgeMm = 1.0;
     bool exactField = false;
     bool anythingVisible = true;
+    bool occupancyKnown = true;   // a skip structure was built: planes can be tightened, space skipped
     double occupiedFraction = 1.0;         // of the skip structure's blocks
     double maxExtinctionPerMm = 0.0;
     double minPositiveExtinctionPerMm = 0.0;

@@ -96,8 +96,7 @@ void Renderer::State::updateBoxes(const Scene& scene, double layerLengthMm) {
     if (boxesOfLook == scene.lookGeneration() && boxesOfLengthMm == length) {
         return;
     }
-    boxes = scene.cloud() != nullptr ? visibleBoxes(*scene.cloud(), scene.geometry(), length)
-                                     : std::vector<VisibleBox>{{glm::dvec3(-1.0), glm::dvec3(2.0)}};
+    boxes = visibleBoxes(*scene.cloud(), scene.geometry(), length);
     boxesOfLook = scene.lookGeneration();
     boxesOfLengthMm = length;
 }
@@ -105,9 +104,9 @@ void Renderer::State::updateBoxes(const Scene& scene, double layerLengthMm) {
 void Renderer::State::drawStack(const Scene& scene, const FramePlan& plan, const View& view, const Viewport& viewport,
                                 const gl::Program& program) {
     const RayFrame frame = makeRayFrame(view, viewport, scene.geometry(), plan.lattice);
-    const bool tight = plan.tighten && scene.cloud() != nullptr;
+    SLABCAST_EXPECTS(!plan.tighten || scene.cloud() != nullptr, plan.tighten);
     ProxyStack stack;
-    if (tight) {
+    if (plan.tighten) {
         const Frustum& f = view.frustum;
         const glm::dvec2 widest(std::max(std::abs(f.left), std::abs(f.right)),
                                 std::max(std::abs(f.bottom), std::abs(f.top)));
@@ -119,7 +118,7 @@ void Renderer::State::drawStack(const Scene& scene, const FramePlan& plan, const
     }
     program.use();
     textures.bind();
-    drawer.draw(makeFrameBlock(frame, view.frustum, scene, plan), stack, tight);
+    drawer.draw(makeFrameBlock(frame, view.frustum, scene, plan), stack, plan.tighten);
 }
 
 Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}

@@ -76,6 +76,7 @@ SceneFacts Scene::facts() const {
     facts.sphere = geometry_.boundingSphere();
     facts.smallestVoxelEdgeMm = geometry_.smallestVoxelEdgeMm();
     facts.exactField = isExact(texels_.format);
+    facts.occupancyKnown = cloud_.has_value();
     if (cloud_) {
         const glm::dvec3 blocks(cloud_->blocks);
         facts.occupiedFraction =

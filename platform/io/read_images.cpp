@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
 
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include "platform/io/image_module.h"
 #include "platform/io/parse_text.h"
 #include "platform/io/readers.h"
 #include "platform/io/tiff_extent.h"
@@ -12,25 +13,6 @@
 namespace slabcast {
 
 namespace {
-
-struct PixelType {
-    OIIO::TypeDesc::BASETYPE stored;
-    VoxelType type;
-    OIIO::TypeDesc::BASETYPE read;
-};
-
-/// Every type as it is, but half, which float holds exactly.
-constexpr std::array<PixelType, 9> kTypes = {{
-    {OIIO::TypeDesc::UINT8, VoxelType::U8, OIIO::TypeDesc::UINT8},
-    {OIIO::TypeDesc::INT8, VoxelType::I8, OIIO::TypeDesc::INT8},
-    {OIIO::TypeDesc::UINT16, VoxelType::U16, OIIO::TypeDesc::UINT16},
-    {OIIO::TypeDesc::INT16, VoxelType::I16, OIIO::TypeDesc::INT16},
-    {OIIO::TypeDesc::UINT32, VoxelType::U32, OIIO::TypeDesc::UINT32},
-    {OIIO::TypeDesc::INT32, VoxelType::I32, OIIO::TypeDesc::INT32},
-    {OIIO::TypeDesc::HALF, VoxelType::F32, OIIO::TypeDesc::FLOAT},
-    {OIIO::TypeDesc::FLOAT, VoxelType::F32, OIIO::TypeDesc::FLOAT},
-    {OIIO::TypeDesc::DOUBLE, VoxelType::F64, OIIO::TypeDesc::DOUBLE},
-}};
 
 struct Page {
     std::filesystem::path path;
@@ -43,94 +25,115 @@ tl::unexpected<Error> unreadable(const std::filesystem::path& path, const std::s
                             why.empty() ? "no image format is recognised" : oneLine(why)));
 }
 
-Result<std::unique_ptr<OIIO::ImageInput>> open(const std::filesystem::path& path) {
-    if (!isWholeTiff(path)) {
-        return fail(
-            ErrorCode::FileTruncated,
-            fmt::format("{}: the file ends before its pages do; fetch it again", path.string()));
+/// A file of one or more pages, open for as long as it lives.
+class PagedFile {
+public:
+    static Result<PagedFile> open(const std::filesystem::path& path) {
+        const Result<const ImageModule*> module = imageModule(path, ErrorCode::FileUnreadable);
+        if (!module) {
+            return tl::unexpected(module.error());
+        }
+        if (!isWholeTiff(path)) {
+            return fail(ErrorCode::FileTruncated,
+                        fmt::format("{}: the file ends before its pages do; fetch it again",
+                                    path.string()));
+        }
+        ImageFile* file = (*module)->open(path.c_str());
+        if (file == nullptr) {
+            return unreadable(path, (*module)->lastError());
+        }
+        return PagedFile(path, **module, file);
     }
-    std::unique_ptr<OIIO::ImageInput> file = OIIO::ImageInput::open(path.string());
-    if (!file) {
-        return unreadable(path, OIIO::geterror());
-    }
-    return file;
-}
 
-/// Millimetres per pixel along one axis, where the file says so, else 1.
-double pixelSpacingMm(const OIIO::ImageSpec& spec, const char* resolutionTag) {
-    const std::string unit(spec.get_string_attribute("ResolutionUnit"));
-    const double unitMm = unit == "in" || unit == "inch" ? 25.4 : unit == "cm" ? 10.0 : 0.0;
-    const double resolution = spec.get_float_attribute(resolutionTag);
-    return unitMm > 0.0 && resolution > 0.0 ? unitMm / resolution : 1.0;
-}
+    int countPages() {
+        ImagePage page;
+        int count = 1;
+        while (module_->describe(file_.get(), count, &page)) {
+            ++count;
+        }
+        return count;
+    }
 
-Result<PixelType> greyType(const std::filesystem::path& path, const OIIO::ImageSpec& spec) {
-    if (spec.nchannels != 1) {
-        return fail(ErrorCode::UnsupportedType,
-                    fmt::format("{}: has {} channels, and a volume has one; convert the images to "
-                                "grey without alpha",
-                                path.string(), spec.nchannels));
+    /// Fails: FileUnreadable, UnsupportedType (not grey, or of a type that is not read).
+    Result<ImagePage> describe(int index) {
+        ImagePage page;
+        if (!module_->describe(file_.get(), index, &page)) {
+            return unreadable(path_, module_->lastError());
+        }
+        if (page.channels != 1) {
+            return fail(
+                ErrorCode::UnsupportedType,
+                fmt::format("{}: has {} channels, and a volume has one; convert the images to "
+                            "grey without alpha",
+                            path_.string(), page.channels));
+        }
+        if (!page.isReadable) {
+            return fail(
+                ErrorCode::UnsupportedType,
+                fmt::format("{}: pixels of type '{}' are not read; convert them to an integer "
+                            "of 8 to 32 bits, float or double",
+                            path_.string(), page.typeName));
+        }
+        return page;
     }
-    const auto found = std::find_if(kTypes.begin(), kTypes.end(), [&](const PixelType& entry) {
-        return entry.stored == spec.format.basetype;
-    });
-    if (found == kTypes.end()) {
-        return fail(ErrorCode::UnsupportedType,
-                    fmt::format("{}: pixels of type '{}' are not read; convert them to an integer "
-                                "of 8 to 32 bits, float or double",
-                                path.string(), spec.format.c_str()));
+
+    /// Fails: FileTruncated.
+    Result<void> read(int index, std::byte* target) {
+        if (!module_->read(file_.get(), index, target)) {
+            return fail(
+                ErrorCode::FileTruncated,
+                fmt::format("{}: {}; the pixels end early or are damaged: fetch the file again",
+                            path_.string(), oneLine(module_->lastError())));
+        }
+        return {};
     }
-    return *found;
-}
+
+private:
+    PagedFile(std::filesystem::path path, const ImageModule& module, ImageFile* file)
+        : path_(std::move(path)), module_(&module), file_(file, module.close) {}
+
+    std::filesystem::path path_;
+    const ImageModule* module_;
+    std::unique_ptr<ImageFile, void (*)(ImageFile*) noexcept> file_;
+};
 
 /// What all pages must share, from the first; voxels are made room for.
 Result<Volume> emptyVolume(const Page& first, std::size_t pageCount) {
-    const auto file = open(first.path);
-    if (!file) {
-        return tl::unexpected(file.error());
+    const Result<ImagePage> page = PagedFile::open(first.path).and_then([&](PagedFile file) {
+        return file.describe(first.index);
+    });
+    if (!page) {
+        return tl::unexpected(page.error());
     }
-    const OIIO::ImageSpec& spec = (*file)->spec();
-    const Result<PixelType> type = greyType(first.path, spec);
-    if (!type) {
-        return tl::unexpected(type.error());
-    }
-    const Result<std::int64_t> bytes = checkedByteCount(
-        {spec.width, spec.height, static_cast<std::int64_t>(pageCount)}, type->type);
+    const glm::ivec3 dims{page->width, page->height, static_cast<int>(pageCount)};
+    const Result<std::int64_t> bytes = checkedByteCount({dims.x, dims.y, dims.z}, page->type);
     if (!bytes) {
         return tl::unexpected(bytes.error());
     }
     Volume volume;
     volume.name = first.path.filename().string();
-    volume.type = type->type;
-    volume.geometry.dims = {spec.width, spec.height, static_cast<int>(pageCount)};
-    volume.geometry.spacingMm = {pixelSpacingMm(spec, "XResolution"),
-                                 pixelSpacingMm(spec, "YResolution"), 1.0};
+    volume.type = page->type;
+    volume.geometry.dims = dims;
+    volume.geometry.spacingMm = {page->spacingMm[0], page->spacingMm[1], 1.0};
     volume.voxels.resize(*bytes);
     return volume;
 }
 
-Result<void> readPage(const Page& page, const Volume& volume, OIIO::ImageInput& file,
-                      std::byte* target) {
-    const OIIO::ImageSpec spec = file.spec(page.index);
+Result<void> readPage(const Page& page, const Volume& volume, PagedFile& file, std::byte* target) {
     const glm::ivec3 dims = volume.geometry.dims;
-    const Result<PixelType> type = greyType(page.path, spec);
-    if (!type) {
-        return tl::unexpected(type.error());
+    const Result<ImagePage> found = file.describe(page.index);
+    if (!found) {
+        return tl::unexpected(found.error());
     }
-    if (spec.width != dims.x || spec.height != dims.y || type->type != volume.type) {
+    if (found->width != dims.x || found->height != dims.y || found->type != volume.type) {
         return fail(
             ErrorCode::InvalidGeometry,
             fmt::format("{}: {} x {} pixels of {}, where the first slice has {} x {} of {}; "
                         "take away what does not belong to the stack",
-                        page.path.string(), spec.width, spec.height, name(type->type), dims.x,
+                        page.path.string(), found->width, found->height, name(found->type), dims.x,
                         dims.y, name(volume.type)));
     }
-    if (!file.read_image(page.index, 0, 0, 1, OIIO::TypeDesc(type->read), target)) {
-        return fail(ErrorCode::FileTruncated,
-                    fmt::format("{}: {}; the pixels end early or are damaged: fetch the file again",
-                                page.path.string(), oneLine(file.geterror())));
-    }
-    return {};
+    return file.read(page.index, target);
 }
 
 Result<Volume> readPages(const std::vector<Page>& pages) {
@@ -140,42 +143,21 @@ Result<Volume> readPages(const std::vector<Page>& pages) {
     }
     const std::size_t pageBytes = volume->voxels.size() / pages.size();
     std::byte* target = volume->voxels.data();
-    Result<std::unique_ptr<OIIO::ImageInput>> file;
+    std::optional<PagedFile> file;
     for (const Page& page : pages) {
         if (page.index == 0) {
-            file = open(page.path);
+            Result<PagedFile> opened = PagedFile::open(page.path);
+            if (!opened) {
+                return tl::unexpected(opened.error());
+            }
+            file = std::move(*opened);
         }
-        if (!file) {
-            return tl::unexpected(file.error());
-        }
-        if (const Result<void> read = readPage(page, *volume, **file, target); !read) {
+        if (const Result<void> read = readPage(page, *volume, *file, target); !read) {
             return tl::unexpected(read.error());
         }
         target += pageBytes;
     }
     return volume;
-}
-
-Result<int> countPages(const std::filesystem::path& path) {
-    const auto file = open(path);
-    if (!file) {
-        return tl::unexpected(file.error());
-    }
-    int count = 1;
-    while ((*file)->seek_subimage(count, 0)) {
-        ++count;
-    }
-    return count;
-}
-
-/// OpenImageIO reports by value, but the standard library below it may still run out of memory.
-template <class Body>
-auto withoutExceptions(const std::filesystem::path& path, const Body& body) -> decltype(body()) {
-    try {
-        return body();
-    } catch (const std::exception& exception) {
-        return unreadable(path, exception.what());
-    }
 }
 
 tl::unexpected<Error> flat(const std::filesystem::path& path) {
@@ -195,20 +177,19 @@ bool isImage(const std::filesystem::path& path) {
 }
 
 Result<Volume> readImagePages(const std::filesystem::path& path) {
-    return withoutExceptions(path, [&]() -> Result<Volume> {
-        const Result<int> count = countPages(path);
-        if (!count) {
-            return tl::unexpected(count.error());
-        }
-        if (*count == 1) {
-            return flat(path);
-        }
-        std::vector<Page> pages;
-        for (int index = 0; index < *count; ++index) {
-            pages.push_back({path, index});
-        }
-        return readPages(pages);
-    });
+    const Result<int> count =
+        PagedFile::open(path).map([](PagedFile file) { return file.countPages(); });
+    if (!count) {
+        return tl::unexpected(count.error());
+    }
+    if (*count == 1) {
+        return flat(path);
+    }
+    std::vector<Page> pages;
+    for (int index = 0; index < *count; ++index) {
+        pages.push_back({path, index});
+    }
+    return readPages(pages);
 }
 
 Result<Volume> readImageStack(const std::filesystem::path& folder,
@@ -223,7 +204,7 @@ Result<Volume> readImageStack(const std::filesystem::path& folder,
     for (const std::filesystem::path& file : files) {
         pages.push_back({file, 0});
     }
-    Result<Volume> volume = withoutExceptions(folder, [&] { return readPages(pages); });
+    Result<Volume> volume = readPages(pages);
     if (volume) {
         volume->name = folder.filename().string();
     }

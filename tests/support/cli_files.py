@@ -55,7 +55,8 @@ def dicom(series, z, edge=8):
         element(0x0020, 0x0013, "IS", str(z + 1)),
         element(0x0020, 0x0032, "DS", f"0\\0\\{z}"), element(0x0020, 0x0037, "DS", "1\\0\\0\\0\\1\\0"),
         short(0x0002, 1), element(0x0028, 0x0004, "CS", "MONOCHROME2"), short(0x0010, edge), short(0x0011, edge),
-        element(0x0028, 0x0030, "DS", "1\\1"), short(0x0100, 16), short(0x0101, 16), short(0x0102, 15), short(0x0103, 1),
+        element(0x0028, 0x0030, "DS", "1\\1"), short(0x0100, 16), short(0x0101, 16), short(0x0102, 15),
+        short(0x0103, 1),
         element(0x7FE0, 0x0010, "OW", struct.pack(f"<{edge * edge}h", *range(edge * edge)))))
     return b"\0" * 128 + b"DICM" + element(2, 0, "UL", struct.pack("<I", len(meta))) + meta + body
 
@@ -88,7 +89,8 @@ class Png:
             for i in range(stride):
                 left = row[i - step] if i >= step else 0
                 corner = above[i - step] if i >= step else 0
-                row[i] = row[i] + (0, left, above[i], (left + above[i]) // 2, _paeth(left, above[i], corner))[kind] & 255
+                guess = (0, left, above[i], (left + above[i]) // 2, _paeth(left, above[i], corner))[kind]
+                row[i] = (row[i] + guess) & 255
             rows.append(bytes(row))
             above = row
         return rows

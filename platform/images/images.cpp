@@ -1,0 +1,155 @@
+// OpenImageIO behind the table of platform/io/image_module.h. It decides nothing: what is refused,
+// and in which words, is platform/io's.
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include "platform/io/image_module.h"
+
+namespace slabcast {
+
+struct ImageFile {
+    std::unique_ptr<OIIO::ImageInput> input;
+};
+
+namespace {
+
+struct PixelType {
+    OIIO::TypeDesc::BASETYPE stored;
+    VoxelType type;
+    OIIO::TypeDesc::BASETYPE read;
+};
+
+/// Every type as it is, but half, which float holds exactly.
+constexpr std::array<PixelType, 9> kTypes = {{
+    {OIIO::TypeDesc::UINT8, VoxelType::U8, OIIO::TypeDesc::UINT8},
+    {OIIO::TypeDesc::INT8, VoxelType::I8, OIIO::TypeDesc::INT8},
+    {OIIO::TypeDesc::UINT16, VoxelType::U16, OIIO::TypeDesc::UINT16},
+    {OIIO::TypeDesc::INT16, VoxelType::I16, OIIO::TypeDesc::INT16},
+    {OIIO::TypeDesc::UINT32, VoxelType::U32, OIIO::TypeDesc::UINT32},
+    {OIIO::TypeDesc::INT32, VoxelType::I32, OIIO::TypeDesc::INT32},
+    {OIIO::TypeDesc::HALF, VoxelType::F32, OIIO::TypeDesc::FLOAT},
+    {OIIO::TypeDesc::FLOAT, VoxelType::F32, OIIO::TypeDesc::FLOAT},
+    {OIIO::TypeDesc::DOUBLE, VoxelType::F64, OIIO::TypeDesc::DOUBLE},
+}};
+
+thread_local std::string error;
+
+const char* lastError() noexcept {
+    return error.c_str();
+}
+
+/// OpenImageIO reports by value, but the standard library below it may still run out of memory.
+template <class Body>
+auto withoutExceptions(const Body& body) noexcept -> decltype(body()) {
+    try {
+        return body();
+    } catch (const std::exception& exception) {
+        error = exception.what();
+        return {};
+    }
+}
+
+ImageFile* open(const char* path) noexcept {
+    return withoutExceptions([&]() -> ImageFile* {
+        auto input = OIIO::ImageInput::open(path);
+        if (!input) {
+            error = OIIO::geterror();
+            return nullptr;
+        }
+        return new ImageFile{std::move(input)};
+    });
+}
+
+void close(ImageFile* file) noexcept {
+    delete file;
+}
+
+/// Millimetres per pixel along one axis, where the file says so, else 1.
+double pixelSpacingMm(const OIIO::ImageSpec& spec, const char* resolutionTag) {
+    const std::string unit(spec.get_string_attribute("ResolutionUnit"));
+    const double unitMm = unit == "in" || unit == "inch" ? 25.4 : unit == "cm" ? 10.0 : 0.0;
+    const double resolution = spec.get_float_attribute(resolutionTag);
+    return unitMm > 0.0 && resolution > 0.0 ? unitMm / resolution : 1.0;
+}
+
+/// None where the type is not read.
+const PixelType* pixelType(const OIIO::ImageSpec& spec) {
+    const auto found = std::find_if(kTypes.begin(), kTypes.end(), [&](const PixelType& entry) {
+        return entry.stored == spec.format.basetype;
+    });
+    return found != kTypes.end() ? &*found : nullptr;
+}
+
+bool describe(ImageFile* file, int index, ImagePage* page) noexcept {
+    return withoutExceptions([&] {
+        if (!file->input->seek_subimage(index, 0)) {
+            error = file->input->geterror();
+            return false;
+        }
+        const OIIO::ImageSpec& spec = file->input->spec();
+        const PixelType* type = pixelType(spec);
+        *page = {.width = spec.width,
+                 .height = spec.height,
+                 .channels = spec.nchannels,
+                 .type = type != nullptr ? type->type : VoxelType::U8,
+                 .isReadable = type != nullptr,
+                 .typeName = spec.format.c_str(),
+                 .spacingMm = {pixelSpacingMm(spec, "XResolution"),
+                               pixelSpacingMm(spec, "YResolution")}};
+        return true;
+    });
+}
+
+bool read(ImageFile* file, int index, void* pixels) noexcept {
+    return withoutExceptions([&] {
+        const PixelType* type = pixelType(file->input->spec(index));
+        const bool isRead =
+            type != nullptr && file->input->read_image(index, 0, 0, 1, type->read, pixels);
+        error = isRead ? "" : file->input->geterror();
+        return isRead;
+    });
+}
+
+/// Into memory, so that platform/io's way of writing files holds for pictures too.
+bool encodeExr(int width, int height, const float* rgba, ImageModule::TakeBytes take,
+               void* taker) noexcept {
+    return withoutExceptions([&] {
+        OIIO::ImageSpec spec(width, height, 4, OIIO::TypeDesc::FLOAT);
+        spec.attribute("compression", "zip");
+        std::vector<unsigned char> bytes;
+        OIIO::Filesystem::IOVecOutput memory(bytes);
+        const auto output = OIIO::ImageOutput::create("openexr"); // no file name need end so
+        const bool isEncoded = output && output->set_ioproxy(&memory) &&
+                               output->open("exr", spec) &&
+                               output->write_image(spec.format, rgba) && output->close();
+        if (isEncoded) {
+            take(taker, reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        } else {
+            error = output ? output->geterror() : OIIO::geterror();
+        }
+        return isEncoded;
+    });
+}
+
+constexpr ImageModule kModule = {.version = ImageModule::kVersion,
+                                 .lastError = lastError,
+                                 .open = open,
+                                 .close = close,
+                                 .describe = describe,
+                                 .read = read,
+                                 .encodeExr = encodeExr};
+
+} // namespace
+} // namespace slabcast
+
+extern "C" __attribute__((visibility("default"))) const slabcast::ImageModule*
+slabcastImageModule() {
+    return &slabcast::kModule;
+}

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "core/volume/volume.h"
+
+namespace slabcast {
+
+struct ImageFile; // open for reading, in the module's keeping
+
+/// One page of an image file. `typeName` is the library's word for a type; where it is none of ours,
+/// `isReadable` is false.
+struct ImagePage {
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    VoxelType type = VoxelType::U8;
+    bool isReadable = false;
+    const char* typeName = "";
+    double spacingMm[2] = {1.0, 1.0}; // 1 where the file is silent
+};
+
+/// What the module slabcast_images can do, which holds all that needs OpenImageIO. That library brings some 200 others
+/// along (OpenVDB, GDAL, FFmpeg, OpenCV): linked, it made `slabcast --help` take 0.34 s and 134 MiB; opened on first
+/// use, BEFORE_AFTER.
+/// Plain types, and nothing thrown. What fails returns null or false, and lastError() of the same thread says why.
+struct ImageModule {
+    static constexpr std::uint32_t kVersion = 1; // of this layout
+
+    using TakeBytes = void (*)(void* taker, const char* bytes, std::size_t count);
+
+    std::uint32_t version;
+    const char* (*lastError)() noexcept;
+    ImageFile* (*open)(const char* path) noexcept;
+    void (*close)(ImageFile* file) noexcept;
+    bool (*describe)(ImageFile* file, int index,
+                     ImagePage* page) noexcept; // false: there is no such page
+    bool (*read)(ImageFile* file, int index, void* pixels) noexcept;
+    bool (*encodeExr)(int width, int height, const float* rgba, TakeBytes take,
+                      void* taker) noexcept;
+};
+
+/// The module's only symbol, of type `const ImageModule*()`.
+inline constexpr const char* kImageModuleEntry = "slabcastImageModule";
+
+/// Opens the module on first use and never closes it: OpenImageIO keeps threads and exit handlers. The dynamic linker
+/// looks for it, as for every library, in LD_LIBRARY_PATH and along the program's run path, which CMake sets
+/// for `slabcast` and for what links Slabcast::io.
+/// Fails: `failure`, naming `path`, for whose sake it is opened. Tested by: io_libraries_test.cpp, consumer_test.sh
+Result<const ImageModule*> imageModule(const std::filesystem::path& path, ErrorCode failure);
+
+/// For tests: of any file, looked for anew. The error's detail is the cause alone.
+Result<const ImageModule*> openImageModule(const char* fileName);
+
+} // namespace slabcast
