@@ -8,8 +8,8 @@ namespace slabcast::test {
 
 namespace {
 
-constexpr glm::ivec2 kSize(80, 60);
-constexpr Viewport kWhole{0, 0, kSize.x, kSize.y};
+constexpr glm::ivec2 kSmall(80, 60);
+constexpr Viewport kWhole{0, 0, kSmall.x, kSmall.y};
 
 /// A framebuffer of the host's, of any colour format.
 class HostTarget {
@@ -18,7 +18,7 @@ public:
         texture_ = gl::Texture::make("host's texture", GL_TEXTURE_2D);
         framebuffer_ = gl::Framebuffer::make("host's framebuffer");
         gl::BindTexture(GL_TEXTURE_2D, texture_.id());
-        gl::TexStorage2D(GL_TEXTURE_2D, 1, format, kSize.x, kSize.y);
+        gl::TexStorage2D(GL_TEXTURE_2D, 1, format, kSmall.x, kSmall.y);
         gl::BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
         gl::FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_.id(),
                                  0);
@@ -39,13 +39,13 @@ public:
     Picture read() const {
         gl::BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
         gl::StateGuard::usePlainPixelTransfer();
-        Picture picture{kSize, std::vector<glm::vec4>(std::size_t(kSize.x) * kSize.y)};
+        Picture picture{kSmall, std::vector<glm::vec4>(std::size_t(kSmall.x) * kSmall.y)};
         if (format_ == GL_RGBA16F) {
-            gl::ReadPixels(0, 0, kSize.x, kSize.y, GL_RGBA, GL_FLOAT, picture.pixels.data());
+            gl::ReadPixels(0, 0, kSmall.x, kSmall.y, GL_RGBA, GL_FLOAT, picture.pixels.data());
             return picture;
         }
         std::vector<glm::u8vec4> bytes(picture.pixels.size());
-        gl::ReadPixels(0, 0, kSize.x, kSize.y, GL_RGBA, GL_UNSIGNED_BYTE, bytes.data());
+        gl::ReadPixels(0, 0, kSmall.x, kSmall.y, GL_RGBA, GL_UNSIGNED_BYTE, bytes.data());
         std::transform(bytes.begin(), bytes.end(), picture.pixels.begin(),
                        [](glm::u8vec4 b) { return glm::vec4(b) / 255.0F; });
         return picture;
@@ -131,10 +131,10 @@ protected:
         const Volume volume = wavyVolume(random, {22, 22, 22}, VoxelType::U8);
         TransferFunction tf = smoothTransfer(random, 255.0, opaque ? 1.0 : 0.12);
         const Scene scene = makeScene(volume, {.tf = tf, .space = space}, {}, true);
-        Settings settings = segments(1 << 20, SegmentForm::Loop); // one plane: rounded once
+        Settings settings = segments(kAll, SegmentForm::Loop); // one plane: rounded once
         settings.space = space;
         const FramePlan plan = decide(scene, settings);
-        const View view = orbitView(scene, {25.0, 15.0, 2.3}, 45.0, kSize);
+        const View view = orbitView(scene, {25.0, 15.0, 2.3}, 45.0, kSmall);
         const glm::dvec3 stored(64.0 / 255.0, 128.0 / 255.0, 192.0 / 255.0);
         const HostTarget host(target.format);
         host.fill(glm::dvec4(stored, 1.0));
@@ -146,8 +146,8 @@ protected:
         const ReferencePicture reference(scene, plan, view, kWhole);
         double worst = -1.0;
         int halfTransparent = 0;
-        for (int y = 0; y < kSize.y; ++y) {
-            for (int x = 0; x < kSize.x; ++x) {
+        for (int y = 0; y < kSmall.y; ++y) {
+            for (int x = 0; x < kSmall.x; ++x) {
                 const PixelReference pixel = reference.at(glm::dvec2(x, y) + 0.5);
                 halfTransparent += pixel.color.a > 0.2 && pixel.color.a < 0.8;
                 const Range range = expectedRange(pixel, 0x1p-11, space, target, stored);

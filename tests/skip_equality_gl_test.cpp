@@ -10,8 +10,7 @@ namespace slabcast::test {
 
 namespace {
 
-constexpr glm::ivec2 kSize(48, 36);
-constexpr int kAll = 1 << 20; // more layers than there are: one plane
+constexpr glm::ivec2 kSmall(48, 36);
 
 /// Most of it empty, as volumes are: clusters of values in air, single spikes, thin plates or waves.
 Volume randomVolume(Random& random) {
@@ -82,7 +81,7 @@ TransferFunction randomTransfer(Random& random, double highest) {
 View randomView(Random& random, const Scene& scene) {
     const OrbitCamera camera{random.in(0.0, 360.0), random.in(-90.0, 90.0),
                              random.oneOf({0.3, 1.1, 2.0, 3.0, 12.0})};
-    View view = orbitView(scene, camera, random.oneOf({20.0, 50.0, 90.0}), kSize);
+    View view = orbitView(scene, camera, random.oneOf({20.0, 50.0, 90.0}), kSmall);
     const double shift = random.chance(0.5) ? random.in(-0.3, 0.3) : 0.0;
     view.frustum.left += shift;
     view.frustum.right += shift;
@@ -135,7 +134,7 @@ protected:
                 settings.tighten = tighten;
                 settings.skip = skip;
                 const FramePlan plan = decide(scene, settings);
-                const Picture picture = draw(scene, plan, view, kSize);
+                const Picture picture = draw(scene, plan, view, kSmall);
                 if (plain.pixels.empty()) {
                     plain = picture;
                 }

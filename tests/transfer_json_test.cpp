@@ -119,7 +119,7 @@ TEST(Presets, relativeOnesAreLaidOverTheData) {
     EXPECT_DOUBLE_EQ(linear.points.back().value, 412.0);
     EXPECT_DOUBLE_EQ(presetTransferFunction("angio", skewed())->points.back().value, 412.0);
     EXPECT_DOUBLE_EQ(presetTransferFunction("mr", skewed())->points.back().value, 100.0);
-    EXPECT_DOUBLE_EQ(presetTransferFunction("ct-bone", skewed())->points.front().value, 150.0);
+    EXPECT_DOUBLE_EQ(presetTransferFunction("ct-bone", skewed())->points.front().value, 240.0);
 }
 
 TEST(Presets, constantDataKeepThePointsInOrder) {

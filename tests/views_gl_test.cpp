@@ -9,9 +9,6 @@ namespace slabcast::test {
 
 namespace {
 
-constexpr glm::ivec2 kSize(96, 64);
-constexpr int kAll = 1 << 20; // more layers than there are: one plane
-
 /// Exact fields differ from float64 by the table's and the positions' rounding: far below one of 255 steps.
 constexpr double kMeanLimit = 0.0001;
 

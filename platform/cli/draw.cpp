@@ -7,6 +7,7 @@
 
 #include "core/frame/ratio_tuner.h"
 #include "core/gl/api.h"
+#include "platform/cli/progress.h"
 
 namespace slabcast {
 
@@ -31,6 +32,7 @@ Result<Stage> Stage::open(const SceneOptions& options) {
     if (!session) {
         return tl::unexpected(session.error());
     }
+    Progress progress("reading " + options.input.volume);
     Result<LoadedScene> loaded = openScene(options.input, *session);
     if (!loaded) {
         return tl::unexpected(loaded.error());
@@ -51,6 +53,7 @@ Result<Stage> Stage::open(const SceneOptions& options) {
     const bool needsCloud = s.tighten || s.skip.value_or(SkipStructure::Proximity) == SkipStructure::Proximity;
     const SkipOptions skip{needsCloud ? SkipStructure::Proximity : SkipStructure::None, options.skipBlockEdge};
     const int maxTable = static_cast<int>(std::min<std::int64_t>(4096, session->caps.maxTextureSize));
+    progress.show("finding what the transfer function makes visible");
     if (Result<void> set = loaded->scene.setLook(look, skip, maxTable); !set) {
         return tl::unexpected(set.error());
     }
@@ -64,6 +67,7 @@ Result<Stage> Stage::open(const SceneOptions& options) {
 Result<FramePlan> Stage::decide(const Settings& settings) {
     std::vector<RatioMeasurement> measurements;
     if (!settings.planes && !settings.layersPerPlane && scene().facts().anythingVisible) {
+        const Progress progress("measuring ratios on this device");
         Result<std::vector<RatioMeasurement>> measured =
             measureRatios(renderer_, scene(), settings, session_.caps, views(0.0));
         if (!measured) {

@@ -7,21 +7,25 @@
 
 namespace slabcast {
 
-Progress::Progress(std::string step) : step_(std::move(step)) {}
+namespace {
+
+constexpr const char* kClearLine = "\r\033[K";
+
+} // namespace
 
 Progress::~Progress() {
     if (shown_) {
-        fmt::print(stderr, "\r\033[K");
+        fmt::print(stderr, kClearLine);
         std::fflush(stderr);
     }
 }
 
-void Progress::at(int done, int total, const std::string& what) {
+void Progress::show(const std::string& line) {
     if (isatty(STDERR_FILENO) == 0) {
         return;
     }
     shown_ = true;
-    fmt::print(stderr, "\r\033[K{} {}/{} {}", step_, done, total, what);
+    fmt::print(stderr, "{}{}", kClearLine, line);
     std::fflush(stderr);
 }
 

@@ -4,18 +4,19 @@
 
 namespace slabcast {
 
-/// One line on stderr that is written over as a long step goes on; silent where stderr is no terminal.
+/// One line on stderr that is written over as a long step goes on and gone when it is done; silent where stderr is
+/// no terminal.
 class Progress {
 public:
-    explicit Progress(std::string step);
+    Progress() = default;
+    explicit Progress(const std::string& line) { show(line); }
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    void at(int done, int total, const std::string& what = {});
+    void show(const std::string& line);
 
 private:
-    std::string step_;
     bool shown_ = false;
 };
 

@@ -13,6 +13,10 @@ namespace {
 void explain(const FramePlan& plan, const VolumeInfo& info, const Scene& scene) {
     fmt::print("texels {}: {}; off by at most {:.4g} {}\n", name(scene.texels().format), info.formatReason,
                scene.texels().maxQuantisationError, info.unit);
+    constexpr double kMib = 1048576.0;
+    fmt::print("memory: {:.1f} MiB for the texels on the GPU, {:.1f} MiB on the host\n",
+               static_cast<double>(info.forecast.gpuTexelBytes) / kMib,
+               static_cast<double>(info.forecast.hostBytes()) / kMib);
     for (const Reason& reason : plan.reasons) {
         fmt::print("{}: {}\n", reason.what, reason.why);
     }
@@ -75,10 +79,10 @@ Result<void> renderCommand(const RenderOptions& options) {
         (void)stage->drawTimed(*plan, 0.0); // the first frame after a compile also pays for the driver's own work
     }
     std::vector<double> times;
-    Progress progress("frame");
+    Progress progress;
     std::vector<glm::vec4> picture;
     for (int k = 0; k < options.frames; ++k) {
-        progress.at(k + 1, options.frames);
+        progress.show(fmt::format("frame {} of {}", k + 1, options.frames));
         const Result<double> ms = stage->drawTimed(*plan, 360.0 * k / options.frames);
         if (!ms) {
             return tl::unexpected(ms.error());

@@ -230,6 +230,12 @@ Result<void> writePage(const std::string& folder) {
 } // namespace
 
 Result<void> sweepCommand(const SweepOptions& options, const std::string& command) {
+    // Compile times are part of the report: a driver that finds its earlier results would report none.
+    setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
+    Result<Stage> stage = Stage::open(options);
+    if (!stage) {
+        return tl::unexpected(stage.error());
+    }
     std::error_code error;
     const fs::path folder = options.outputFolder;
     fs::create_directories(folder / "thumbnails", error);
@@ -237,19 +243,14 @@ Result<void> sweepCommand(const SweepOptions& options, const std::string& comman
         return fail(ErrorCode::FileUnwritable, fmt::format("{}: cannot make this folder ({}): give another to --out",
                                                            options.outputFolder, error.message()));
     }
-    // Compile times are part of the report: a driver that finds its earlier results would report none.
-    setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
-    Result<Stage> stage = Stage::open(options);
-    if (!stage) {
-        return tl::unexpected(stage.error());
-    }
     const std::vector<Settings> plans = rowSettings(options, totalLayers(options.settings, stage->scene().facts()));
     json rows = json::array();
-    Progress progress("row");
+    Progress progress;
     for (const Settings& settings : plans) {
         const int index = static_cast<int>(rows.size());
-        progress.at(index + 1, static_cast<int>(plans.size()), fmt::format("{} layers per plane, skip {}, {}",
-                    *settings.layersPerPlane, name(*settings.skip), settings.tighten ? "tight planes" : "10-gons"));
+        progress.show(fmt::format("row {} of {}: {} layers per plane, skip {}, {}", index + 1, plans.size(),
+                                  *settings.layersPerPlane, name(*settings.skip),
+                                  settings.tighten ? "tight planes" : "10-gons"));
         Result<json> row = measureRow(*stage, options, settings, index);
         if (!row) {
             return tl::unexpected(row.error());

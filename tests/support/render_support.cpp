@@ -101,6 +101,15 @@ View orbitView(const Scene& scene, const OrbitCamera& camera, double fovDegrees,
             .frustum = symmetricFrustum(fovDegrees, double(size.x) / size.y)};
 }
 
+View asymmetricView(const Scene& scene) {
+    View view = orbitView(scene, {35.0, 20.0, 2.5}, 45.0, kSize);
+    view.frustum.left -= 0.11;
+    view.frustum.right -= 0.11;
+    view.frustum.top += 0.06;
+    view.frustum.bottom += 0.06;
+    return view;
+}
+
 Settings segments(int layersPerPlane, SegmentForm form) {
     Settings settings;
     settings.layersPerPlane = layersPerPlane;

@@ -64,8 +64,26 @@ double largestDifference(const Picture& a, const Picture& b);
 
 View orbitView(const Scene& scene, const OrbitCamera& camera, double fovDegrees, glm::ivec2 size);
 
-/// The orthogonal ways to deal layers out: slicing, hybrids and casting, unrolled and in loops.
+/// Planes of so many layers into fp16, nothing skipped or left early.
 Settings segments(int layersPerPlane, SegmentForm form);
+
+/// More layers per plane than there are: one plane.
+inline constexpr int kAll = 1 << 20;
+
+struct SegmentCase {
+    int layersPerPlane;
+    SegmentForm form;
+};
+
+inline constexpr SegmentCase kSegmentCases[] = {{1, SegmentForm::Unrolled},
+                                                {1, SegmentForm::Loop},
+                                                {8, SegmentForm::Unrolled},
+                                                {11, SegmentForm::Loop},
+                                                {kAll, SegmentForm::Loop}};
+
+inline constexpr glm::ivec2 kSize(96, 72);
+/// From 2.5 radii away, turned about two axes and seen past the middle: nothing is symmetric. For pictures of kSize.
+View asymmetricView(const Scene& scene);
 
 /// One renderer for all tests of the process, so that a shader is compiled once.
 class RenderTest : public GlTest {
