@@ -104,8 +104,9 @@ struct Range {
     }
 };
 
-/// What a pixel may hold: the reference's colour with what rounding may add to it, converted as a straight colour,
-/// composited over `stored` in the space that the target blends in, and rounded once more.
+/// What a pixel may hold: the reference's colour with what rounding may add to it, converted as a
+/// straight colour, composited over `stored` in the space that the target blends in, and rounded
+/// once more.
 Range expectedRange(const PixelReference& reference, double layerError, CompositingSpace space,
                     const TargetCase& target, glm::dvec3 stored) {
     const double alpha = reference.color.a;

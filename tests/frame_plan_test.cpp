@@ -181,7 +181,8 @@ TEST(FramePlan, TheRatioNeverMovesTheLattice) {
             const FramePlan p = planned(dealt);
             EXPECT_EQ(p.lattice, lattice) << planes;
             EXPECT_LE(p.planes, std::min(planes, lattice.total));
-            // Every layer lies on exactly one plane, the one of its quotient, and no plane is without.
+            // Every layer lies on exactly one plane, the one of its quotient, and no plane is
+            // without.
             EXPECT_GE(std::int64_t{p.planes} * p.layersPerPlane, lattice.total) << planes;
             EXPECT_LT(std::int64_t{p.planes - 1} * p.layersPerPlane, lattice.total) << planes;
         }

@@ -12,7 +12,8 @@ namespace {
 
 constexpr glm::ivec2 kSmall(48, 36);
 
-/// Most of it empty, as volumes are: clusters of values in air, single spikes, thin plates or waves.
+/// Most of it empty, as volumes are: clusters of values in air, single spikes, thin plates or
+/// waves.
 Volume randomVolume(Random& random) {
     const glm::ivec3 dims{random.oneOf({1, 2, 7, 16, 23, 33}), random.oneOf({1, 3, 8, 17, 32}),
                           random.oneOf({1, 5, 12, 16, 29})};

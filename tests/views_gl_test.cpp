@@ -9,7 +9,8 @@ namespace slabcast::test {
 
 namespace {
 
-/// Exact fields differ from float64 by the table's and the positions' rounding: far below one of 255 steps.
+/// Exact fields differ from float64 by the table's and the positions' rounding: far below one of
+/// 255 steps.
 constexpr double kMeanLimit = 0.0001;
 
 class ViewsTest : public RenderTest {

@@ -44,7 +44,8 @@ inline tl::unexpected<Error> fail(ErrorCode code, std::string detail) {
     return tl::unexpected<Error>(Error{code, std::move(detail)});
 }
 
-/// A breached contract: prints function and value, then aborts. For mistakes of the calling code, never for input.
+/// A breached contract: prints function and value, then aborts. For mistakes of the calling code,
+/// never for input.
 [[noreturn]] void contractBreach(const char* function, const char* condition, double value);
 
 #define SLABCAST_EXPECTS(condition, value)                                                         \

@@ -6,7 +6,9 @@ namespace slabcast {
 
 namespace {
 
-glm::vec4 packed(glm::dvec3 xyz, double w) { return glm::vec4(glm::dvec4(xyz, w)); }
+glm::vec4 packed(glm::dvec3 xyz, double w) {
+    return glm::vec4(glm::dvec4(xyz, w));
+}
 
 /// Sampled value of an exact texel from what texelFetch returns in r and g.
 glm::vec4 decodeWeights(TexelFormat format) {
@@ -21,17 +23,20 @@ glm::dvec2 tableMap(const Texels& texels, const TransferTable& table) {
         return {0.0, 0.0};
     }
     const double texelsPerValue = (static_cast<double>(table.texels.size()) - 1.0) / span;
-    return {texels.valueScale * texelsPerValue, (texels.valueBias - table.firstValue) * texelsPerValue};
+    return {texels.valueScale * texelsPerValue,
+            (texels.valueBias - table.firstValue) * texelsPerValue};
 }
 
 void fillSkip(FrameBlock& block, const ProximityCloud& cloud, glm::ivec3 dims) {
-    block.skipMap = packed(glm::dvec3(dims) / static_cast<double>(cloud.blockEdgeVoxels), cloud.quantumMm);
+    block.skipMap =
+        packed(glm::dvec3(dims) / static_cast<double>(cloud.blockEdgeVoxels), cloud.quantumMm);
     block.skipBlocks = glm::ivec4(cloud.blocks - 1, 0);
 }
 
-void fillShading(FrameBlock& block, const ShadingParameters& shading, const VolumeGeometry& geometry,
-                 double valueScale) {
-    // A difference over one voxel is dims times its derivative by uvw; gradients are covectors: inverse transpose.
+void fillShading(FrameBlock& block, const ShadingParameters& shading,
+                 const VolumeGeometry& geometry, double valueScale) {
+    // A difference over one voxel is dims times its derivative by uvw; gradients are covectors:
+    // inverse transpose.
     const glm::dmat3 uvwFromModel(geometry.uvwFromModel());
     const glm::dmat3 patientRows = glm::transpose(glm::dmat3(geometry.modelFromUvw()));
     for (int row = 0; row < 3; ++row) {
@@ -45,7 +50,8 @@ void fillShading(FrameBlock& block, const ShadingParameters& shading, const Volu
 
 } // namespace
 
-FrameBlock makeFrameBlock(const RayFrame& f, const Frustum& frustum, const Scene& scene, const FramePlan& plan) {
+FrameBlock makeFrameBlock(const RayFrame& f, const Frustum& frustum, const Scene& scene,
+                          const FramePlan& plan) {
     const bool shells = f.lattice.kind == LatticeKind::Shells;
     FrameBlock block{};
     block.centre0 = packed(f.centre0, f.lattice.total / 2.0);
@@ -58,7 +64,8 @@ FrameBlock makeFrameBlock(const RayFrame& f, const Frustum& frustum, const Scene
     block.sphere = packed(f.sphereCentre, f.sphereDistance);
     block.viewTangent = glm::vec4(glm::dvec4(f.tangent0, 2.0 / (frustum.right - frustum.left),
                                              2.0 / (frustum.top - frustum.bottom)));
-    block.viewport = glm::vec4(glm::dvec4(f.viewportCentre, shells ? 1.0 : 0.0, plan.terminationAlpha));
+    block.viewport =
+        glm::vec4(glm::dvec4(f.viewportCentre, shells ? 1.0 : 0.0, plan.terminationAlpha));
     const glm::dvec2 map = tableMap(scene.texels(), scene.table());
     const ClassifiedTexels* classified = scene.classified();
     block.tableMap =

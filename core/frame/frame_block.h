@@ -9,7 +9,8 @@
 
 namespace slabcast {
 
-/// The uniform block of gles_shaders/frame.glsl, std140: vec4 and ivec4 only, in its order. Change both.
+/// The uniform block of gles_shaders/frame.glsl, std140: vec4 and ivec4 only, in its order. Change
+/// both.
 struct FrameBlock {
     glm::vec4 centre0, centreX, centreY;
     glm::vec4 direction0, directionX, directionY;
@@ -31,6 +32,7 @@ static_assert(sizeof(FrameBlock) == 16 * 22);
 class Scene;
 
 /// Rounds a view's float64 coefficients to what the shaders take. Pure.
-FrameBlock makeFrameBlock(const RayFrame& frame, const Frustum& frustum, const Scene& scene, const FramePlan& plan);
+FrameBlock makeFrameBlock(const RayFrame& frame, const Frustum& frustum, const Scene& scene,
+                          const FramePlan& plan);
 
 } // namespace slabcast

@@ -11,7 +11,8 @@ namespace {
 constexpr int kMaxTotalLayers = 1 << 20;
 /// Layers per plane where nothing was measured: the middle of the core paper's best range (Fig. 4).
 constexpr int kUnmeasuredLayersPerPlane = 16;
-/// Above this share of occupied blocks a skip fetch per layer costs more than the few layers that it saves.
+/// Above this share of occupied blocks a skip fetch per layer costs more than the few layers that
+/// it saves.
 constexpr double kWorthSkipping = 0.95;
 constexpr double kHalfStep8Bit = 0.5 / 255.0;
 
@@ -25,8 +26,9 @@ Result<void> checkRange(const char* what, double value, double low, double high)
     if (value >= low && value <= high) {
         return {};
     }
-    return fail(ErrorCode::InvalidArgument, std::string(what) + " is " + number(value) + ": give a number from " +
-                                                number(low) + " to " + number(high));
+    return fail(ErrorCode::InvalidArgument, std::string(what) + " is " + number(value) +
+                                                ": give a number from " + number(low) + " to " +
+                                                number(high));
 }
 
 Result<void> check(const Settings& s) {
@@ -43,19 +45,23 @@ Result<void> check(const Settings& s) {
     };
     for (const auto& range : ranges) {
         if (range.value) {
-            if (Result<void> ok = checkRange(range.what, *range.value, range.low, range.high); !ok) {
+            if (Result<void> ok = checkRange(range.what, *range.value, range.low, range.high);
+                !ok) {
                 return ok;
             }
         }
     }
     if (s.planes && s.layersPerPlane) {
-        return fail(ErrorCode::InvalidArgument, "planes and layers per plane are both set: give one, the total "
-                                                "number of layers decides the other");
+        return fail(ErrorCode::InvalidArgument,
+                    "planes and layers per plane are both set: give one, the total "
+                    "number of layers decides the other");
     }
     return {};
 }
 
-int planesFor(int total, int layersPerPlane) { return (total + layersPerPlane - 1) / layersPerPlane; }
+int planesFor(int total, int layersPerPlane) {
+    return (total + layersPerPlane - 1) / layersPerPlane;
+}
 
 /// The decisions of one plan in the making: each writes what it chose and why.
 struct Planner {
@@ -64,16 +70,21 @@ struct Planner {
     const gl::Caps& caps;
     FramePlan plan;
 
-    void because(std::string what, std::string why) { plan.reasons.push_back({std::move(what), std::move(why)}); }
+    void because(std::string what, std::string why) {
+        plan.reasons.push_back({std::move(what), std::move(why)});
+    }
 
     void chooseLattice() {
         const int total = totalLayers(settings, facts);
-        const double spacing = settings.totalLayers ? 2.0 * facts.sphere.radiusMm / total
-                                                    : settings.layerSpacingVoxels * facts.smallestVoxelEdgeMm;
+        const double spacing = settings.totalLayers
+                                   ? 2.0 * facts.sphere.radiusMm / total
+                                   : settings.layerSpacingVoxels * facts.smallestVoxelEdgeMm;
         plan.lattice = {settings.lattice, total, spacing};
         because("layers " + std::to_string(total),
-                "one every " + number(spacing) + " mm (" + number(spacing / facts.smallestVoxelEdgeMm) +
-                    " voxels) over the bounding sphere's diameter of " + number(2.0 * facts.sphere.radiusMm) + " mm");
+                "one every " + number(spacing) + " mm (" +
+                    number(spacing / facts.smallestVoxelEdgeMm) +
+                    " voxels) over the bounding sphere's diameter of " +
+                    number(2.0 * facts.sphere.radiusMm) + " mm");
         because(std::string(name(settings.lattice)) + " lattice",
                 settings.lattice == LatticeKind::Planar
                     ? "layers of equal view depth, as in the core paper"
@@ -84,7 +95,8 @@ struct Planner {
         if (settings.form != SegmentForm::Auto) {
             return settings.form;
         }
-        return unrollLengthFor(layersPerPlane) == 0 || caps.isSoftware ? SegmentForm::Loop : SegmentForm::Unrolled;
+        return unrollLengthFor(layersPerPlane) == 0 || caps.isSoftware ? SegmentForm::Loop
+                                                                       : SegmentForm::Unrolled;
     }
 
     Ratio dealtOut(int layersPerPlane, SegmentForm form) const {
@@ -94,18 +106,21 @@ struct Planner {
 
     Ratio chooseRatio(std::span<const RatioMeasurement> measurements) {
         if (settings.planes || settings.layersPerPlane) {
-            const int length = settings.layersPerPlane ? *settings.layersPerPlane
-                                                       : planesFor(plan.lattice.total, *settings.planes);
+            const int length = settings.layersPerPlane
+                                   ? *settings.layersPerPlane
+                                   : planesFor(plan.lattice.total, *settings.planes);
             const Ratio ratio = dealtOut(length, formFor(length));
             because("ratio " + name(ratio), settings.planes && ratio.planes < *settings.planes
                                                 ? "fewer planes than asked for hold all layers"
                                                 : "asked for");
             return ratio;
         }
-        const auto best = std::min_element(measurements.begin(), measurements.end(),
-                                           [](const auto& a, const auto& b) { return a.frameMs < b.frameMs; });
+        const auto best =
+            std::min_element(measurements.begin(), measurements.end(),
+                             [](const auto& a, const auto& b) { return a.frameMs < b.frameMs; });
         if (best == measurements.end()) {
-            const Ratio ratio = dealtOut(kUnmeasuredLayersPerPlane, formFor(kUnmeasuredLayersPerPlane));
+            const Ratio ratio =
+                dealtOut(kUnmeasuredLayersPerPlane, formFor(kUnmeasuredLayersPerPlane));
             because("ratio " + name(ratio), "nothing was measured on this device: a middle ratio");
             return ratio;
         }
@@ -128,11 +143,12 @@ struct Planner {
             because(std::string("skip ") + name(*settings.skip), "asked for");
         } else if (facts.occupiedFraction > kWorthSkipping) {
             plan.variant.skip = SkipStructure::None;
-            because("skip none", number(100.0 * facts.occupiedFraction) + " % of the blocks hold something visible");
+            because("skip none", number(100.0 * facts.occupiedFraction) +
+                                     " % of the blocks hold something visible");
         } else {
             plan.variant.skip = SkipStructure::Proximity;
-            because("skip proximity",
-                    "only " + number(100.0 * facts.occupiedFraction) + " % of the blocks hold something visible");
+            because("skip proximity", "only " + number(100.0 * facts.occupiedFraction) +
+                                          " % of the blocks hold something visible");
         }
     }
 
@@ -141,17 +157,21 @@ struct Planner {
             because("no termination", "asked for");
             return;
         }
-        // The densest segment that this TF can make; obliqueness lengthens it by less than 2 up to 120 degrees.
-        const double depth = facts.maxExtinctionPerMm * plan.lattice.spacingMm * plan.layersPerPlane * 2.0;
+        // The densest segment that this TF can make; obliqueness lengthens it by less than 2 up to
+        // 120 degrees.
+        const double depth =
+            facts.maxExtinctionPerMm * plan.lattice.spacingMm * plan.layersPerPlane * 2.0;
         if (plan.layersPerPlane == 1 || 1.0 - std::exp(-depth) < *settings.termination) {
-            because("no termination", plan.layersPerPlane == 1
-                                          ? "a segment of one layer has nothing to leave out"
-                                          : "no segment under this transfer function can become opaque enough");
+            because("no termination",
+                    plan.layersPerPlane == 1
+                        ? "a segment of one layer has nothing to leave out"
+                        : "no segment under this transfer function can become opaque enough");
             return;
         }
         plan.variant.terminates = true;
         plan.terminationAlpha = *settings.termination;
-        because("termination at " + std::to_string(*settings.termination), "dense segments are left early");
+        because("termination at " + std::to_string(*settings.termination),
+                "dense segments are left early");
     }
 
     void chooseTarget() {
@@ -162,22 +182,27 @@ struct Planner {
             because("target rgba16f", "linear light in 8 bits would band in the shadows");
         } else {
             because(std::string("target ") + name(plan.target),
-                    plan.target == TargetFormat::Rgba8 ? "blended in 8 bits, the cheapest on a mobile GPU"
-                                                       : "keeps what 8 bits would round away at every plane");
+                    plan.target == TargetFormat::Rgba8
+                        ? "blended in 8 bits, the cheapest on a mobile GPU"
+                        : "keeps what 8 bits would round away at every plane");
         }
-        const double least =
-            1.0 - std::exp(-facts.minPositiveExtinctionPerMm * plan.lattice.spacingMm * plan.layersPerPlane);
+        const double least = 1.0 - std::exp(-facts.minPositiveExtinctionPerMm *
+                                            plan.lattice.spacingMm * plan.layersPerPlane);
         if (plan.target == TargetFormat::Rgba8 && least < kHalfStep8Bit) {
-            because("warning", "the faintest material adds " + number(least) +
-                                   " per plane, below rgba8's rounding (1/510): --target rgba16f or fewer planes "
-                                   "keep it");
+            because(
+                "warning",
+                "the faintest material adds " + number(least) +
+                    " per plane, below rgba8's rounding (1/510): --target rgba16f or fewer planes "
+                    "keep it");
         }
     }
 };
 
 } // namespace
 
-const char* name(TargetFormat format) { return format == TargetFormat::Rgba8 ? "rgba8" : "rgba16f"; }
+const char* name(TargetFormat format) {
+    return format == TargetFormat::Rgba8 ? "rgba8" : "rgba16f";
+}
 
 std::string name(const Ratio& ratio) {
     return std::to_string(ratio.planes) + "x" + std::to_string(ratio.layersPerPlane) +
@@ -185,8 +210,8 @@ std::string name(const Ratio& ratio) {
 }
 
 int totalLayers(const Settings& settings, const SceneFacts& facts) {
-    return settings.totalLayers.value_or(
-        layersToCover(facts.sphere.radiusMm, settings.layerSpacingVoxels * facts.smallestVoxelEdgeMm));
+    return settings.totalLayers.value_or(layersToCover(
+        facts.sphere.radiusMm, settings.layerSpacingVoxels * facts.smallestVoxelEdgeMm));
 }
 
 std::vector<Ratio> ratioCandidates(const Settings& settings, const SceneFacts& facts) {
@@ -196,8 +221,10 @@ std::vector<Ratio> ratioCandidates(const Settings& settings, const SceneFacts& f
         for (const SegmentForm form : {SegmentForm::Unrolled, SegmentForm::Loop}) {
             const bool allowed = settings.form == SegmentForm::Auto || settings.form == form;
             const bool exists = form == SegmentForm::Loop || unrollLengthFor(layers) != 0;
-            const Ratio ratio{planesFor(total, std::min(layers, total)), std::min(layers, total), form};
-            if (allowed && exists && std::find(candidates.begin(), candidates.end(), ratio) == candidates.end()) {
+            const Ratio ratio{planesFor(total, std::min(layers, total)), std::min(layers, total),
+                              form};
+            if (allowed && exists &&
+                std::find(candidates.begin(), candidates.end(), ratio) == candidates.end()) {
                 candidates.push_back(ratio);
             }
         }
@@ -213,40 +240,47 @@ Result<FramePlan> plan(const SceneFacts& facts, const Settings& settings, const 
     Planner planner{facts, settings, caps, {}};
     planner.chooseLattice();
     if (planner.plan.lattice.total > kMaxTotalLayers) {
-        return fail(ErrorCode::InvalidArgument, "the layer spacing asks for " +
-                                                    std::to_string(planner.plan.lattice.total) +
-                                                    " layers: at most 1048576; widen --layer-spacing");
+        return fail(ErrorCode::InvalidArgument,
+                    "the layer spacing asks for " + std::to_string(planner.plan.lattice.total) +
+                        " layers: at most 1048576; widen --layer-spacing");
     }
     const Ratio ratio = planner.chooseRatio(measurements);
     if (ratio.form == SegmentForm::Unrolled && unrollLengthFor(ratio.layersPerPlane) == 0) {
-        return fail(ErrorCode::InvalidArgument, "segments of " + std::to_string(ratio.layersPerPlane) +
-                                                    " layers are too long to unroll: at most " +
-                                                    std::to_string(kUnrollLengths.back()) + ", or the loop form");
+        return fail(ErrorCode::InvalidArgument,
+                    "segments of " + std::to_string(ratio.layersPerPlane) +
+                        " layers are too long to unroll: at most " +
+                        std::to_string(kUnrollLengths.back()) + ", or the loop form");
     }
     FramePlan& result = planner.plan;
     result.planes = ratio.planes;
     result.layersPerPlane = ratio.layersPerPlane;
-    result.variant.unroll = ratio.form == SegmentForm::Unrolled ? unrollLengthFor(ratio.layersPerPlane) : 0;
+    result.variant.unroll =
+        ratio.form == SegmentForm::Unrolled ? unrollLengthFor(ratio.layersPerPlane) : 0;
     result.variant.classification = settings.classification;
     result.variant.exactField = facts.exactField && settings.classification == Classification::Post;
     result.variant.shaded = settings.shaded && settings.classification == Classification::Post;
     planner.because(std::string("classification ") + name(settings.classification),
-                    !settings.shaded                                    ? "no shading: no gradients are fetched"
-                    : settings.classification == Classification::Post ? "shaded per sample"
-                                                                        : "shading is baked into the texels");
+                    !settings.shaded ? "no shading: no gradients are fetched"
+                    : settings.classification == Classification::Post
+                        ? "shaded per sample"
+                        : "shading is baked into the texels");
     if (result.variant.exactField) {
-        planner.because("exact field", "the volume's texels are fetched and interpolated in float32, not filtered");
+        planner.because(
+            "exact field",
+            "the volume's texels are fetched and interpolated in float32, not filtered");
     }
     planner.chooseSkip();
     planner.chooseTermination();
     result.tighten = settings.tighten && facts.occupancyKnown;
     planner.because(result.tighten ? "tight planes" : "10-gons",
-                    result.tighten ? "each plane is the rectangle around what is visible in its slab"
-                                   : "each plane covers the bounding sphere's slice");
+                    result.tighten
+                        ? "each plane is the rectangle around what is visible in its slab"
+                        : "each plane covers the bounding sphere's slice");
     planner.chooseTarget();
     result.drawsNothing = !facts.anythingVisible;
     if (result.drawsNothing) {
-        planner.because("draws nothing", "the transfer function makes no value of this volume visible");
+        planner.because("draws nothing",
+                        "the transfer function makes no value of this volume visible");
     }
     return std::move(planner.plan);
 }

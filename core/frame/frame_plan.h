@@ -23,9 +23,9 @@ struct Settings {
     Classification classification = Classification::Post;
     std::optional<SkipStructure> skip;
     LatticeKind lattice = LatticeKind::Planar;
-    double layerSpacingVoxels = 1.0;   // of the smallest voxel edge
-    std::optional<int> totalLayers;    // instead of the spacing
-    std::optional<int> planes;         // at most one of planes and layersPerPlane
+    double layerSpacingVoxels = 1.0; // of the smallest voxel edge
+    std::optional<int> totalLayers;  // instead of the spacing
+    std::optional<int> planes;       // at most one of planes and layersPerPlane
     std::optional<int> layersPerPlane;
     SegmentForm form = SegmentForm::Auto;
     bool tighten = true;
@@ -42,8 +42,9 @@ struct SceneFacts {
     double smallestVoxelEdgeMm = 1.0;
     bool exactField = false;
     bool anythingVisible = true;
-    bool occupancyKnown = true;   // a skip structure was built: planes can be tightened, space skipped
-    double occupiedFraction = 1.0;         // of the skip structure's blocks
+    bool occupancyKnown =
+        true; // a skip structure was built: planes can be tightened, space skipped
+    double occupiedFraction = 1.0; // of the skip structure's blocks
     double maxExtinctionPerMm = 0.0;
     double minPositiveExtinctionPerMm = 0.0;
 };
@@ -72,7 +73,8 @@ struct Reason {
     bool operator==(const Reason&) const = default;
 };
 
-/// Everything that a frame does, decided. Two pictures are of the same settings when their plans are equal.
+/// Everything that a frame does, decided. Two pictures are of the same settings when their plans
+/// are equal.
 struct FramePlan {
     Lattice lattice;
     int planes = 1;
@@ -88,15 +90,16 @@ struct FramePlan {
     bool operator==(const FramePlan&) const = default;
 };
 
-/// Total layers that the settings ask for: the given number or enough for the sphere at the spacing.
+/// Total layers that the settings ask for: the given number or enough for the sphere at the
+/// spacing.
 int totalLayers(const Settings& settings, const SceneFacts& facts);
 
 /// Ratios worth measuring for `auto`, from slicing to ray casting.
 std::vector<Ratio> ratioCandidates(const Settings& settings, const SceneFacts& facts);
 
 /// Pure: no GL, no clock. Leaves out what the scene does not need and says why.
-/// Fails: InvalidArgument (a number outside its range; planes and layersPerPlane both set; an unrolled form beyond
-/// the list). Tested by: frame_plan_test.cpp
+/// Fails: InvalidArgument (a number outside its range; planes and layersPerPlane both set; an
+/// unrolled form beyond the list). Tested by: frame_plan_test.cpp
 Result<FramePlan> plan(const SceneFacts& facts, const Settings& settings, const gl::Caps& caps,
                        std::span<const RatioMeasurement> measurements);
 

@@ -39,7 +39,8 @@ Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const g
     } else if (skipLook_ != look) {
         SLABCAST_EXPECTS(scene.cloud() != nullptr, 0);
         const ProximityCloud& cloud = *scene.cloud();
-        if (Result<void> done = keep(skip_, uploadBytes3d(cloud.freeLengths, cloud.blocks, caps)); !done) {
+        if (Result<void> done = keep(skip_, uploadBytes3d(cloud.freeLengths, cloud.blocks, caps));
+            !done) {
             return done;
         }
         skipBytes_ = static_cast<std::int64_t>(cloud.freeLengths.size());
@@ -49,7 +50,8 @@ Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const g
 }
 
 Result<void> GpuScene::updateVolume(const Scene& scene, bool pre, const gl::Caps& caps) {
-    const bool current = pre ? classifiedLook_ == scene.lookGeneration() : scalars_ == scene.texelsGeneration();
+    const bool current =
+        pre ? classifiedLook_ == scene.lookGeneration() : scalars_ == scene.texelsGeneration();
     if (current) {
         return {};
     }
@@ -73,7 +75,8 @@ void GpuScene::bind() const {
     const struct {
         GLenum target;
         GLuint id;
-    } units[] = {{GL_TEXTURE_3D, volume_.id()}, {GL_TEXTURE_2D, table_.id()}, {GL_TEXTURE_3D, skip_.id()}};
+    } units[] = {
+        {GL_TEXTURE_3D, volume_.id()}, {GL_TEXTURE_2D, table_.id()}, {GL_TEXTURE_3D, skip_.id()}};
     for (GLuint unit = 0; unit < 3; ++unit) {
         gl::ActiveTexture(GL_TEXTURE0 + unit);
         gl::BindTexture(units[unit].target, units[unit].id);

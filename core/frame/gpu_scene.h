@@ -7,7 +7,8 @@
 
 namespace slabcast {
 
-/// A scene's textures: made from the host's copy when a plan first needs them, released when it no longer does.
+/// A scene's textures: made from the host's copy when a plan first needs them, released when it no
+/// longer does.
 class GpuScene {
 public:
     /// Fails: DeviceOutOfMemory, VolumeTooLarge.

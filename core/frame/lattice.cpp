@@ -12,7 +12,8 @@ constexpr int kMaxLayers = 1 << 22;
 
 /// Offsets at which centre + o * step lies in [0,1] along every axis.
 glm::dvec2 boxOffsets(glm::dvec3 centre, glm::dvec3 step) {
-    glm::dvec2 range(-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
+    glm::dvec2 range(-std::numeric_limits<double>::infinity(),
+                     std::numeric_limits<double>::infinity());
     for (int k = 0; k < 3; ++k) {
         if (step[k] == 0.0) {
             if (centre[k] < 0.0 || centre[k] > 1.0) {
@@ -30,7 +31,9 @@ glm::dvec2 boxOffsets(glm::dvec3 centre, glm::dvec3 step) {
 
 } // namespace
 
-const char* name(LatticeKind kind) { return kind == LatticeKind::Planar ? "planar" : "shells"; }
+const char* name(LatticeKind kind) {
+    return kind == LatticeKind::Planar ? "planar" : "shells";
+}
 
 int layersToCover(double radiusMm, double spacingMm) {
     // The relative slack keeps 2R/s = 444 from becoming 445 by rounding.
@@ -41,8 +44,10 @@ int layersToCover(double radiusMm, double spacingMm) {
 RayFrame makeRayFrame(const View& view, const Viewport& viewport, const VolumeGeometry& geometry,
                       const Lattice& lattice) {
     const BoundingSphere sphere = geometry.boundingSphere();
-    const double viewUnitsPerMm = std::cbrt(std::abs(glm::determinant(glm::dmat3(view.viewFromModel))));
-    const glm::dvec3 centreInView = glm::dvec3(view.viewFromModel * glm::dvec4(sphere.centreMm, 1.0));
+    const double viewUnitsPerMm =
+        std::cbrt(std::abs(glm::determinant(glm::dmat3(view.viewFromModel))));
+    const glm::dvec3 centreInView =
+        glm::dvec3(view.viewFromModel * glm::dvec4(sphere.centreMm, 1.0));
 
     RayFrame frame;
     frame.lattice = lattice;
@@ -55,7 +60,8 @@ RayFrame makeRayFrame(const View& view, const Viewport& viewport, const VolumeGe
     frame.viewportCentre = {viewport.x + viewport.width / 2.0, viewport.y + viewport.height / 2.0};
     const Frustum& f = view.frustum;
     frame.tangent0 = {(f.left + f.right) / 2.0, (f.bottom + f.top) / 2.0};
-    frame.tangentPerPixel = {(f.right - f.left) / viewport.width, (f.top - f.bottom) / viewport.height};
+    frame.tangentPerPixel = {(f.right - f.left) / viewport.width,
+                             (f.top - f.bottom) / viewport.height};
 
     const glm::dmat3 uvwFromModel(geometry.uvwFromModel());
     const glm::dmat3 uvwFromView = uvwFromModel * glm::inverse(glm::dmat3(view.viewFromModel));
@@ -63,8 +69,10 @@ RayFrame makeRayFrame(const View& view, const Viewport& viewport, const VolumeGe
     frame.direction0 = uvwFromView * glm::dvec3(frame.tangent0, -1.0);
     frame.directionX = uvwFromView * glm::dvec3(frame.tangentPerPixel.x, 0.0, 0.0);
     frame.directionY = uvwFromView * glm::dvec3(0.0, frame.tangentPerPixel.y, 0.0);
-    // Relative to the sphere's centre, which stays near the box however far the eye: no cancellation.
-    const glm::dvec3 centreUvw = glm::dvec3(geometry.uvwFromModel() * glm::dvec4(sphere.centreMm, 1.0));
+    // Relative to the sphere's centre, which stays near the box however far the eye: no
+    // cancellation.
+    const glm::dvec3 centreUvw =
+        glm::dvec3(geometry.uvwFromModel() * glm::dvec4(sphere.centreMm, 1.0));
     const glm::dvec3 lateral(frame.tangent0.x * depth - frame.sphereCentre.x,
                              frame.tangent0.y * depth - frame.sphereCentre.y, 0.0);
     frame.centre0 = centreUvw + uvwFromView * lateral;

@@ -12,9 +12,10 @@ enum class LatticeKind : std::uint8_t { Planar, Shells };
 
 const char* name(LatticeKind kind);
 
-/// `total` layers of `spacingMm`, centred on the bounding sphere's centre. Layer i in [0, total) holds the offsets
-/// [i - total/2, i + 1 - total/2) in layers from the centre and is sampled in its middle. How the layers are dealt
-/// out to planes is not part of it: the ratio never moves a sample.
+/// `total` layers of `spacingMm`, centred on the bounding sphere's centre. Layer i in [0, total)
+/// holds the offsets [i - total/2, i + 1 - total/2) in layers from the centre and is sampled in its
+/// middle. How the layers are dealt out to planes is not part of it: the ratio never moves a
+/// sample.
 struct Lattice {
     LatticeKind kind = LatticeKind::Planar;
     int total = 0;
@@ -23,14 +24,14 @@ struct Lattice {
     bool operator==(const Lattice&) const = default;
 };
 
-/// Fewest layers that cover the sphere at a spacing: ceil(2 radius / spacing), at least 1, at most 2^22 (beyond
-/// which float32 no longer counts half layers).
+/// Fewest layers that cover the sphere at a spacing: ceil(2 radius / spacing), at least 1, at most
+/// 2^22 (beyond which float32 no longer counts half layers).
 int layersToCover(double radiusMm, double spacingMm);
 
-/// What every pixel's ray is made from: affine in the pixel's position, in float64. The one source of the shaders'
-/// uniforms and of the float64 references.
-/// With p = fragCoord - viewportCentre: centre(p) = centre0 + centreX p.x + centreY p.y is where the ray crosses the
-/// depth of the sphere's centre, direction(p) likewise its change per unit of depth, both in uvw.
+/// What every pixel's ray is made from: affine in the pixel's position, in float64. The one source
+/// of the shaders' uniforms and of the float64 references. With p = fragCoord - viewportCentre:
+/// centre(p) = centre0 + centreX p.x + centreY p.y is where the ray crosses the depth of the
+/// sphere's centre, direction(p) likewise its change per unit of depth, both in uvw.
 struct RayFrame {
     glm::dvec3 centre0, centreX, centreY;
     glm::dvec3 direction0, directionX, directionY;
@@ -48,12 +49,14 @@ struct RayFrame {
 RayFrame makeRayFrame(const View& view, const Viewport& viewport, const VolumeGeometry& geometry,
                       const Lattice& lattice);
 
-/// One ray in units of layers: at offset o from the lattice's centre it is at centre + o * step (uvw).
+/// One ray in units of layers: at offset o from the lattice's centre it is at centre + o * step
+/// (uvw).
 struct LatticeRay {
     glm::dvec3 centre;
     glm::dvec3 step;
     double layerLengthMm; // along this ray
-    double entry;         // offsets at which the ray enters and leaves box and near plane; entry >= exit: misses
+    double entry; // offsets at which the ray enters and leaves box and near plane; entry >= exit:
+                  // misses
     double exit;
 };
 

@@ -11,7 +11,8 @@ namespace slabcast {
 
 namespace {
 
-/// Outlines are conservative already; these absorb float32 vertices, and the rasteriser's snapping to 1/256 pixel.
+/// Outlines are conservative already; these absorb float32 vertices, and the rasteriser's snapping
+/// to 1/256 pixel.
 constexpr double kGrow = 1.0 + 1e-4;
 constexpr double kGrowPixels = 1.0 / 128.0;
 constexpr double kMacroBlockVoxels = 8.0;
@@ -45,8 +46,9 @@ Outline viewportOutline(const Frustum& f) {
             glm::dvec2(f.right - f.left, f.top - f.bottom) * (std::numbers::sqrt2 / 2.0 * kGrow)};
 }
 
-/// Circle around what a cone of half angle `spread` about the sphere's direction shows at unit depth; none where the
-/// cone reaches 90 degrees off the axis. The image is an ellipse whose long axis is the radial one.
+/// Circle around what a cone of half angle `spread` about the sphere's direction shows at unit
+/// depth; none where the cone reaches 90 degrees off the axis. The image is an ellipse whose long
+/// axis is the radial one.
 std::optional<Circle> circleOfCone(const RayFrame& frame, double spread) {
     const glm::dvec2 lateral(frame.sphereCentre);
     const double offAxis = std::atan2(glm::length(lateral), frame.sphereCentre.z);
@@ -55,7 +57,8 @@ std::optional<Circle> circleOfCone(const RayFrame& frame, double spread) {
     }
     const double inner = std::tan(offAxis - spread);
     const double outer = std::tan(offAxis + spread);
-    const glm::dvec2 radial = glm::length(lateral) > 0.0 ? glm::normalize(lateral) : glm::dvec2(1.0, 0.0);
+    const glm::dvec2 radial =
+        glm::length(lateral) > 0.0 ? glm::normalize(lateral) : glm::dvec2(1.0, 0.0);
     return Circle{radial * ((inner + outer) / 2.0), (outer - inner) / 2.0};
 }
 
@@ -66,8 +69,9 @@ std::optional<Circle> silhouette(const RayFrame& frame) {
                : std::nullopt;
 }
 
-/// Circle around the union of the sphere's discs over a slab of depths. A disc at depth z appears at lateral/z with
-/// radius r(z)/z: bounded by the largest r seen from the nearest z, and the path of the centre between.
+/// Circle around the union of the sphere's discs over a slab of depths. A disc at depth z appears
+/// at lateral/z with radius r(z)/z: bounded by the largest r seen from the nearest z, and the path
+/// of the centre between.
 std::optional<Circle> planarSlabCircle(const RayFrame& frame, const Slab& slab) {
     const double c = frame.sphereCentre.z;
     const double front = std::max(slab.front, c - frame.radius);
@@ -76,13 +80,15 @@ std::optional<Circle> planarSlabCircle(const RayFrame& frame, const Slab& slab) 
         return Circle{}; // rounding at the ends of the stack
     }
     const double nearest = std::clamp(c, front, back) - c;
-    const double discRadius = std::sqrt(std::max(0.0, frame.radius * frame.radius - nearest * nearest));
+    const double discRadius =
+        std::sqrt(std::max(0.0, frame.radius * frame.radius - nearest * nearest));
     const glm::dvec2 lateral(frame.sphereCentre);
     const double travel = glm::length(lateral) * (1.0 / front - 1.0 / back) / 2.0;
     return Circle{lateral * ((1.0 / front + 1.0 / back) / 2.0), discRadius / front + travel};
 }
 
-/// As above for a slab of distances: the widest cone about the sphere's direction that the slab's part of it needs.
+/// As above for a slab of distances: the widest cone about the sphere's direction that the slab's
+/// part of it needs.
 std::optional<Circle> shellSlabCircle(const RayFrame& frame, const Slab& slab) {
     const double e = frame.sphereDistance;
     const double r = frame.radius;
@@ -91,10 +97,12 @@ std::optional<Circle> shellSlabCircle(const RayFrame& frame, const Slab& slab) {
     if (front > back) {
         return Circle{};
     }
-    const double tangency = e > r ? std::sqrt(e * e - r * r) : 0.0; // the silhouette touches at this distance
+    const double tangency =
+        e > r ? std::sqrt(e * e - r * r) : 0.0; // the silhouette touches at this distance
     const double widest = std::clamp(tangency, front, back);
     const double cosine = (widest * widest + e * e - r * r) / (2.0 * widest * e);
-    return cosine <= -1.0 || e == 0.0 ? std::nullopt : circleOfCone(frame, std::acos(std::min(cosine, 1.0)));
+    return cosine <= -1.0 || e == 0.0 ? std::nullopt
+                                      : circleOfCone(frame, std::acos(std::min(cosine, 1.0)));
 }
 
 Outline sphereOutline(const RayFrame& frame, const Frustum& frustum, const Slab& slab) {
@@ -106,8 +114,9 @@ Outline sphereOutline(const RayFrame& frame, const Frustum& frustum, const Slab&
     if (slab.front <= closest) {
         return viewportOutline(frustum);
     }
-    std::optional<Circle> circle = frame.lattice.kind == LatticeKind::Planar ? planarSlabCircle(frame, slab)
-                                                                             : shellSlabCircle(frame, slab);
+    std::optional<Circle> circle = frame.lattice.kind == LatticeKind::Planar
+                                       ? planarSlabCircle(frame, slab)
+                                       : shellSlabCircle(frame, slab);
     const std::optional<Circle> outer = silhouette(frame);
     if (!circle || (outer && outer->radius < circle->radius)) {
         circle = outer;
@@ -116,8 +125,9 @@ Outline sphereOutline(const RayFrame& frame, const Frustum& frustum, const Slab&
         return viewportOutline(frustum);
     }
     const Outline whole = viewportOutline(frustum);
-    const bool clearOfView = std::abs(circle->centre.x - whole.centre.x) > circle->radius * kGrow + whole.halfSize.x ||
-                             std::abs(circle->centre.y - whole.centre.y) > circle->radius * kGrow + whole.halfSize.y;
+    const bool clearOfView =
+        std::abs(circle->centre.x - whole.centre.x) > circle->radius * kGrow + whole.halfSize.x ||
+        std::abs(circle->centre.y - whole.centre.y) > circle->radius * kGrow + whole.halfSize.y;
     return clearOfView ? Outline{} : Outline{circle->centre, glm::dvec2(circle->radius * kGrow)};
 }
 
@@ -128,7 +138,8 @@ ProxyStack trimmed(std::vector<Outline> outlines, const RayFrame& frame) {
         o.halfSize += drawn(o) ? frame.tangentPerPixel * kGrowPixels : glm::dvec2(0.0);
     }
     const auto first = std::find_if(outlines.begin(), outlines.end(), drawn);
-    const auto last = std::find_if(outlines.rbegin(), std::make_reverse_iterator(first), drawn).base();
+    const auto last =
+        std::find_if(outlines.rbegin(), std::make_reverse_iterator(first), drawn).base();
     return {static_cast<int>(first - outlines.begin()), std::vector<Outline>(first, last)};
 }
 
@@ -141,7 +152,9 @@ struct Rectangle {
         high = glm::max(high, h);
     }
     Outline outline() const {
-        return low.x < high.x && low.y < high.y ? Outline{(low + high) / 2.0, (high - low) / 2.0 * kGrow} : Outline{};
+        return low.x < high.x && low.y < high.y
+                   ? Outline{(low + high) / 2.0, (high - low) / 2.0 * kGrow}
+                   : Outline{};
     }
 };
 
@@ -151,7 +164,8 @@ struct Appearance {
     double back = -std::numeric_limits<double>::infinity();
     Rectangle rectangle;
     bool reachesEye = false;
-    bool hidden = false; // by the near plane or behind the eye, with every layer that is sampled in it
+    bool hidden =
+        false; // by the near plane or behind the eye, with every layer that is sampled in it
 };
 
 Appearance appearance(const RayFrame& frame, const glm::dmat4& viewFromUvw, const VisibleBox& box) {
@@ -177,7 +191,8 @@ Appearance appearance(const RayFrame& frame, const glm::dmat4& viewFromUvw, cons
         }
     }
     result.reachesEye = result.front <= closest;
-    // A layer that the near plane cuts may be sampled before it, and shows up to half its depth beyond its sample.
+    // A layer that the near plane cuts may be sampled before it, and shows up to half its depth
+    // beyond its sample.
     result.hidden = result.back + frame.spacing / 2.0 <= std::max(frame.nearDepth, 0.0);
     if (frame.lattice.kind == LatticeKind::Shells) {
         // What lies behind the eye is sampled by the layer around the eye alone.
@@ -189,7 +204,8 @@ Appearance appearance(const RayFrame& frame, const glm::dmat4& viewFromUvw, cons
 
 } // namespace
 
-ProxyStack sphereStack(const RayFrame& frame, const Frustum& frustum, int planes, int layersPerPlane) {
+ProxyStack sphereStack(const RayFrame& frame, const Frustum& frustum, int planes,
+                       int layersPerPlane) {
     std::vector<Outline> outlines(planes);
     for (int p = 0; p < planes; ++p) {
         outlines[p] = sphereOutline(frame, frustum, slabOf(frame, p, layersPerPlane));
@@ -205,7 +221,8 @@ std::vector<VisibleBox> visibleBoxes(const ProximityCloud& cloud, const VolumeGe
     std::size_t block = 0;
     for (int z = 0; z < cloud.blocks.z; ++z) {
         for (int y = 0; y < cloud.blocks.y; ++y) {
-            std::uint8_t* row = &occupied[(static_cast<std::size_t>(z / merge) * macro.y + y / merge) * macro.x];
+            std::uint8_t* row =
+                &occupied[(static_cast<std::size_t>(z / merge) * macro.y + y / merge) * macro.x];
             for (int x = 0; x < cloud.blocks.x; ++x, ++block) {
                 row[x / merge] |= cloud.freeLengths[block] == 0;
             }
@@ -213,10 +230,12 @@ std::vector<VisibleBox> visibleBoxes(const ProximityCloud& cloud, const VolumeGe
     }
     const glm::dvec3 dims(geometry.dims);
     const double edge = static_cast<double>(merge) * cloud.blockEdgeVoxels;
-    // Reach of half a layer in uvw: the rows of uvwFromModel bound how far a unit length goes along each axis.
+    // Reach of half a layer in uvw: the rows of uvwFromModel bound how far a unit length goes along
+    // each axis.
     const glm::dmat3 rows = glm::transpose(glm::dmat3(geometry.uvwFromModel()));
     const glm::dvec3 reach =
-        glm::dvec3(glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2])) * (layerLengthMm / 2.0) +
+        glm::dvec3(glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2])) *
+            (layerLengthMm / 2.0) +
         1e-3 / dims;
     std::vector<VisibleBox> boxes;
     for (int z = 0; z < macro.z; ++z) {
@@ -227,7 +246,8 @@ std::vector<VisibleBox> visibleBoxes(const ProximityCloud& cloud, const VolumeGe
                 }
                 const glm::ivec3 index(x, y, z);
                 const glm::dvec3 low = glm::dvec3(index) * edge / dims;
-                const glm::dvec3 high = glm::min(glm::dvec3(index + 1) * edge / dims, glm::dvec3(1.0));
+                const glm::dvec3 high =
+                    glm::min(glm::dvec3(index + 1) * edge / dims, glm::dvec3(1.0));
                 const glm::dvec3 atLow(glm::equal(index, glm::ivec3(0)));
                 const glm::dvec3 atHigh(glm::equal(index, macro - 1));
                 boxes.push_back({low - reach * atLow, high + reach * atHigh});
@@ -249,13 +269,15 @@ ProxyStack tightStack(const RayFrame& frame, const Frustum& frustum, const glm::
             continue;
         }
         const glm::dvec2 low = seen.reachesEye ? viewLow : glm::max(seen.rectangle.low, viewLow);
-        const glm::dvec2 high = seen.reachesEye ? viewHigh : glm::min(seen.rectangle.high, viewHigh);
+        const glm::dvec2 high =
+            seen.reachesEye ? viewHigh : glm::min(seen.rectangle.high, viewHigh);
         if (low.x > high.x || low.y > high.y) {
             continue;
         }
         const auto planeAt = [&](double place) {
             const double layer = (place - latticeOrigin(frame)) / frame.spacing + half;
-            return static_cast<int>(std::clamp(std::floor(layer / layersPerPlane), 0.0, planes - 1.0));
+            return static_cast<int>(
+                std::clamp(std::floor(layer / layersPerPlane), 0.0, planes - 1.0));
         };
         for (int p = planeAt(seen.front); p <= planeAt(seen.back); ++p) {
             rectangles[p].include(low, high);

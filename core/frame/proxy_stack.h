@@ -10,25 +10,28 @@
 
 namespace slabcast {
 
-/// What one plane's polygon covers, in tangent space (x/depth, y/depth): the unit polygon, a 10-gon around the unit
-/// circle or the square [-1,1]^2, scaled by halfSize about centre. halfSize 0: nothing to draw.
+/// What one plane's polygon covers, in tangent space (x/depth, y/depth): the unit polygon, a 10-gon
+/// around the unit circle or the square [-1,1]^2, scaled by halfSize about centre. halfSize 0:
+/// nothing to draw.
 struct Outline {
     glm::dvec2 centre{0.0};
     glm::dvec2 halfSize{0.0};
     bool empty() const { return halfSize.x <= 0.0 || halfSize.y <= 0.0; }
 };
 
-/// Planes of a view that may touch anything, nearest first: instance k of the draw is plane `first + k`.
+/// Planes of a view that may touch anything, nearest first: instance k of the draw is plane `first
+/// + k`.
 struct ProxyStack {
     int firstPlane = 0;
     std::vector<Outline> outlines; // empty where the view sees nothing
 };
 
 /// 10-gons around the bounding sphere's part in every slab: the eye-anchored static stack.
-/// Covers, over each slab, the union of the sphere's discs, also of off-axis ones; the whole viewport where a slab
-/// reaches the near plane or the eye. Slabs behind the near plane are dropped. Cost: O(planes).
-/// Source: Tukora 2020, section 2.1. Tested by: proxy_stack_test.cpp
-ProxyStack sphereStack(const RayFrame& frame, const Frustum& frustum, int planes, int layersPerPlane);
+/// Covers, over each slab, the union of the sphere's discs, also of off-axis ones; the whole
+/// viewport where a slab reaches the near plane or the eye. Slabs behind the near plane are
+/// dropped. Cost: O(planes). Source: Tukora 2020, section 2.1. Tested by: proxy_stack_test.cpp
+ProxyStack sphereStack(const RayFrame& frame, const Frustum& frustum, int planes,
+                       int layersPerPlane);
 
 /// A box in uvw that may hold visible samples.
 struct VisibleBox {
@@ -36,18 +39,20 @@ struct VisibleBox {
     glm::dvec3 high{1.0};
 };
 
-/// The occupied blocks of a cloud, merged to boxes of about eight voxels so that a view costs a few 10^4 corners.
-/// Boxes on the volume's faces reach half a layer further: there a layer's sample may lie outside, clamped.
-/// Depends on the TF and the layer length, not on the view. Cost: O(blocks). Tested by: proxy_stack_test.cpp
-std::vector<VisibleBox> visibleBoxes(const ProximityCloud& cloud, const VolumeGeometry& geometry, double layerLengthMm);
+/// The occupied blocks of a cloud, merged to boxes of about eight voxels so that a view costs a few
+/// 10^4 corners. Boxes on the volume's faces reach half a layer further: there a layer's sample may
+/// lie outside, clamped. Depends on the TF and the layer length, not on the view. Cost: O(blocks).
+/// Tested by: proxy_stack_test.cpp
+std::vector<VisibleBox> visibleBoxes(const ProximityCloud& cloud, const VolumeGeometry& geometry,
+                                     double layerLengthMm);
 
 /// Rectangles around what the boxes show in each slab; slabs that no box meets are empty.
 /// Draws the same samples as sphereStack wherever they are visible. Cost: O(boxes + planes).
 ProxyStack tightStack(const RayFrame& frame, const Frustum& frustum, const glm::dmat4& viewFromUvw,
                       std::span<const VisibleBox> boxes, int planes, int layersPerPlane);
 
-/// One outline per run of `planesPerOutline` planes, for stacks beyond the uniform block: the rectangle around theirs,
-/// to be drawn with the square.
+/// One outline per run of `planesPerOutline` planes, for stacks beyond the uniform block: the
+/// rectangle around theirs, to be drawn with the square.
 std::vector<Outline> grouped(const ProxyStack& stack, int planesPerOutline);
 
 } // namespace slabcast

@@ -14,17 +14,20 @@ namespace {
 constexpr int kShrink = 4;
 constexpr int kTimedFrames = 3;
 
-double drawMs(Renderer& renderer, const Scene& scene, const FramePlan& plan, std::span<const ViewTarget> views) {
+double drawMs(Renderer& renderer, const Scene& scene, const FramePlan& plan,
+              std::span<const ViewTarget> views) {
     const auto start = std::chrono::steady_clock::now();
     (void)renderer.draw(scene, plan, views); // draws without a layer of our own: cannot fail
     gl::Finish();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+        .count();
 }
 
 } // namespace
 
-Result<std::vector<RatioMeasurement>> measureRatios(Renderer& renderer, const Scene& scene, const Settings& settings,
-                                                    const gl::Caps& caps, std::span<const ViewTarget> views) {
+Result<std::vector<RatioMeasurement>> measureRatios(Renderer& renderer, const Scene& scene,
+                                                    const Settings& settings, const gl::Caps& caps,
+                                                    std::span<const ViewTarget> views) {
     const gl::StateGuard guard;
     gl::ColorTargets targets;
     std::vector<ViewTarget> small(views.begin(), views.end());
@@ -48,7 +51,8 @@ Result<std::vector<RatioMeasurement>> measureRatios(Renderer& renderer, const Sc
         if (Result<void> ready = renderer.prepare(scene, *candidate); !ready) {
             return tl::unexpected(ready.error());
         }
-        Result<void> made = targets.resize(extent.x, extent.y, {static_cast<GLenum>(eightBit ? GL_RGBA8 : GL_RGBA16F)});
+        Result<void> made = targets.resize(extent.x, extent.y,
+                                           {static_cast<GLenum>(eightBit ? GL_RGBA8 : GL_RGBA16F)});
         if (!made) {
             return tl::unexpected(made.error());
         }

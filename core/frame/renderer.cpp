@@ -15,7 +15,9 @@ namespace slabcast {
 
 namespace {
 
-GLenum glFormat(TargetFormat format) { return format == TargetFormat::Rgba8 ? GL_RGBA8 : GL_RGBA16F; }
+GLenum glFormat(TargetFormat format) {
+    return format == TargetFormat::Rgba8 ? GL_RGBA8 : GL_RGBA16F;
+}
 
 /// The framebuffer may be blended into directly where it holds what is composited.
 bool needsLayer(CompositingSpace space, TargetEncoding encoding) {
@@ -31,7 +33,8 @@ LayerConversion conversionTo(CompositingSpace space, TargetEncoding encoding) {
 }
 
 void setBlending(GLenum source, GLenum destination) {
-    for (const GLenum off : {GL_DEPTH_TEST, GL_STENCIL_TEST, GL_CULL_FACE, GL_SCISSOR_TEST, GL_DITHER}) {
+    for (const GLenum off :
+         {GL_DEPTH_TEST, GL_STENCIL_TEST, GL_CULL_FACE, GL_SCISSOR_TEST, GL_DITHER}) {
         gl::Disable(off);
     }
     gl::DepthMask(GL_FALSE);
@@ -59,8 +62,8 @@ struct Renderer::State {
     Result<void> createFixed();
     Result<const gl::Program*> program(const ShaderVariant& variant);
     void updateBoxes(const Scene& scene, double layerLengthMm);
-    void drawStack(const Scene& scene, const FramePlan& plan, const View& view, const Viewport& viewport,
-                   const gl::Program& program);
+    void drawStack(const Scene& scene, const FramePlan& plan, const View& view,
+                   const Viewport& viewport, const gl::Program& program);
 };
 
 Result<void> Renderer::State::createFixed() {
@@ -82,7 +85,8 @@ Result<const gl::Program*> Renderer::State::program(const ShaderVariant& variant
     if (!text) {
         return tl::unexpected(text.error());
     }
-    Result<gl::Program> built = gl::buildProgram(slabcast::name(variant), text->vertex, text->fragment);
+    Result<gl::Program> built =
+        gl::buildProgram(slabcast::name(variant), text->vertex, text->fragment);
     if (!built) {
         return tl::unexpected(built.error());
     }
@@ -101,8 +105,8 @@ void Renderer::State::updateBoxes(const Scene& scene, double layerLengthMm) {
     boxesOfLengthMm = length;
 }
 
-void Renderer::State::drawStack(const Scene& scene, const FramePlan& plan, const View& view, const Viewport& viewport,
-                                const gl::Program& program) {
+void Renderer::State::drawStack(const Scene& scene, const FramePlan& plan, const View& view,
+                                const Viewport& viewport, const gl::Program& program) {
     const RayFrame frame = makeRayFrame(view, viewport, scene.geometry(), plan.lattice);
     SLABCAST_EXPECTS(!plan.tighten || scene.cloud() != nullptr, plan.tighten);
     ProxyStack stack;
@@ -111,8 +115,8 @@ void Renderer::State::drawStack(const Scene& scene, const FramePlan& plan, const
         const glm::dvec2 widest(std::max(std::abs(f.left), std::abs(f.right)),
                                 std::max(std::abs(f.bottom), std::abs(f.top)));
         updateBoxes(scene, plan.lattice.spacingMm * std::sqrt(1.0 + glm::dot(widest, widest)));
-        stack = tightStack(frame, f, view.viewFromModel * scene.geometry().modelFromUvw(), boxes, plan.planes,
-                           plan.layersPerPlane);
+        stack = tightStack(frame, f, view.viewFromModel * scene.geometry().modelFromUvw(), boxes,
+                           plan.planes, plan.layersPerPlane);
     } else {
         stack = sphereStack(frame, view.frustum, plan.planes, plan.layersPerPlane);
     }
@@ -151,7 +155,8 @@ Result<void> Renderer::prepare(const Scene& scene, const FramePlan& plan) {
     return program ? Result<void>{} : tl::unexpected(program.error());
 }
 
-Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan, std::span<const ViewTarget> views) {
+Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
+                            std::span<const ViewTarget> views) {
     if (plan.drawsNothing) {
         return {};
     }
@@ -167,14 +172,16 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan, std::span
             state_->drawStack(scene, plan, target.view, v, program->second);
             continue;
         }
-        if (Result<void> done = state_->layer.resize(v.width, v.height, {glFormat(plan.target)}); !done) {
+        if (Result<void> done = state_->layer.resize(v.width, v.height, {glFormat(plan.target)});
+            !done) {
             return done;
         }
         state_->layer.begin();
         state_->drawStack(scene, plan, target.view, {0, 0, v.width, v.height}, program->second);
         gl::BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
         gl::Viewport(v.x, v.y, v.width, v.height);
-        state_->compositor.composite(state_->layer.texture(0), v.x, v.y, conversionTo(plan.space, target.encoding));
+        state_->compositor.composite(state_->layer.texture(0), v.x, v.y,
+                                     conversionTo(plan.space, target.encoding));
     }
     return {};
 }
@@ -182,8 +189,9 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan, std::span
 Result<WorkCounters> Renderer::countWork(const Scene& scene, const FramePlan& plan,
                                          std::span<const ViewTarget> views) {
     if (!state_->caps.floatBlend) {
-        return fail(ErrorCode::DeviceUnsupported, "work cannot be counted on this device: it does not blend float32 "
-                                                  "targets (GL_EXT_float_blend)");
+        return fail(ErrorCode::DeviceUnsupported,
+                    "work cannot be counted on this device: it does not blend float32 "
+                    "targets (GL_EXT_float_blend)");
     }
     WorkCounters sums;
     if (plan.drawsNothing) {
@@ -199,7 +207,8 @@ Result<WorkCounters> Renderer::countWork(const Scene& scene, const FramePlan& pl
     for (const ViewTarget& target : views) {
         const int width = target.viewport.width;
         const int height = target.viewport.height;
-        if (Result<void> done = state_->counters.resize(width, height, {GL_RGBA32F, GL_RGBA32F}); !done) {
+        if (Result<void> done = state_->counters.resize(width, height, {GL_RGBA32F, GL_RGBA32F});
+            !done) {
             return tl::unexpected(done.error());
         }
         setBlending(GL_ONE, GL_ONE);

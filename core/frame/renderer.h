@@ -12,8 +12,9 @@
 
 namespace slabcast {
 
-/// How the caller's framebuffer holds colour. Encoded: sRGB-encoded values, stored as they are written (an ordinary
-/// RGBA8). Linear: light (a float target). SrgbFormat: an sRGB format, which encodes at every blend.
+/// How the caller's framebuffer holds colour. Encoded: sRGB-encoded values, stored as they are
+/// written (an ordinary RGBA8). Linear: light (a float target). SrgbFormat: an sRGB format, which
+/// encodes at every blend.
 enum class TargetEncoding : std::uint8_t { Encoded, Linear, SrgbFormat };
 
 /// One view's place in a framebuffer of the caller's. What is there stays, seen through the volume.
@@ -28,7 +29,8 @@ struct ViewTarget {
 struct WorkCounters {
     std::int64_t fragments = 0;
     std::int64_t layersEvaluated = 0;
-    std::int64_t layersSkipped = 0; // inside the box but not evaluated: skipped or behind opaque material
+    std::int64_t layersSkipped =
+        0; // inside the box but not evaluated: skipped or behind opaque material
     std::int64_t volumeFetches = 0;
     std::int64_t skipFetches = 0;
 };
@@ -41,7 +43,8 @@ struct GpuMemory {
 };
 
 /// Draws scenes. One GL context, one thread: every call needs the context current.
-/// prepare() may compile and upload, and so may take long; draw() only records GL commands and never waits.
+/// prepare() may compile and upload, and so may take long; draw() only records GL commands and
+/// never waits.
 class Renderer {
 public:
     /// Needs gl::loadApi() done. Fails: DeviceUnsupported.
@@ -50,20 +53,21 @@ public:
     Renderer& operator=(Renderer&&) noexcept;
     ~Renderer();
 
-    /// Brings textures and shaders up to date with scene and plan. Nothing is done for what is there already; what
-    /// the plan does not use is released. Restores the GL state (gl::StateGuard).
-    /// Fails: DeviceOutOfMemory, VolumeTooLarge, ShaderCompile.
+    /// Brings textures and shaders up to date with scene and plan. Nothing is done for what is
+    /// there already; what the plan does not use is released. Restores the GL state
+    /// (gl::StateGuard). Fails: DeviceOutOfMemory, VolumeTooLarge, ShaderCompile.
     Result<void> prepare(const Scene& scene, const FramePlan& plan);
 
-    /// Blends the volume over what each target holds, as premultiplied colour. One instanced draw per view; a layer
-    /// of our own in between only where the target's encoding is not the compositing space. Restores the GL state
-    /// that gl::StateGuard documents. Contract: prepare() has seen this scene and plan.
-    /// Fails: DeviceOutOfMemory (a layer of our own).
+    /// Blends the volume over what each target holds, as premultiplied colour. One instanced draw
+    /// per view; a layer of our own in between only where the target's encoding is not the
+    /// compositing space. Restores the GL state that gl::StateGuard documents. Contract: prepare()
+    /// has seen this scene and plan. Fails: DeviceOutOfMemory (a layer of our own).
     Result<void> draw(const Scene& scene, const FramePlan& plan, std::span<const ViewTarget> views);
 
     /// Draws the same frame once more, counting instead of colouring, and waits for the sums.
     /// Fails: DeviceUnsupported where float32 targets do not blend (GL_EXT_float_blend).
-    Result<WorkCounters> countWork(const Scene& scene, const FramePlan& plan, std::span<const ViewTarget> views);
+    Result<WorkCounters> countWork(const Scene& scene, const FramePlan& plan,
+                                   std::span<const ViewTarget> views);
 
     /// Time that compiling the plan's variant took; 0 before prepare().
     double compileMs(const ShaderVariant& variant) const;

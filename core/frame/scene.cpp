@@ -40,7 +40,8 @@ Result<void> Scene::setLook(const Look& look, const SkipOptions& skip, int maxTa
         look_.shading->gradientFloorPerMm = defaultGradientFloorPerMm();
     }
     lookGeneration_ = nextGeneration();
-    table_ = makeTable(look_.tf, statistics_.min, statistics_.max, integerData_, look_.space, maxTableSize);
+    table_ = makeTable(look_.tf, statistics_.min, statistics_.max, integerData_, look_.space,
+                       maxTableSize);
     classified_.reset();
     if (look_.classification == Classification::Pre) {
         ClassifySettings settings;
@@ -50,7 +51,8 @@ Result<void> Scene::setLook(const Look& look, const SkipOptions& skip, int maxTa
         classified_ = classify(texels_, geometry_, table_, settings);
     }
     cloud_.reset();
-    return skip.structure == SkipStructure::Proximity ? buildCloud(skip.blockEdgeVoxels) : Result<void>{};
+    return skip.structure == SkipStructure::Proximity ? buildCloud(skip.blockEdgeVoxels)
+                                                      : Result<void>{};
 }
 
 Result<void> Scene::buildCloud(int blockEdgeVoxels) {
@@ -60,14 +62,16 @@ Result<void> Scene::buildCloud(int blockEdgeVoxels) {
     }
     const auto start = std::chrono::steady_clock::now();
     const TexelCodes alpha = pre ? alphaCodes(*classified_) : TexelCodes{};
-    const CellVisibility visibility = pre ? cellVisibilityOfAlpha(alpha)
-                                          : cellVisibility(*codes_, texels_, table_, filterErrorSampled_);
+    const CellVisibility visibility =
+        pre ? cellVisibilityOfAlpha(alpha)
+            : cellVisibility(*codes_, texels_, table_, filterErrorSampled_);
     Result<ProximityCloud> cloud = buildProximityCloud(visibility, geometry_, blockEdgeVoxels);
     if (!cloud) {
         return tl::unexpected(cloud.error());
     }
     cloud_ = std::move(*cloud);
-    cloudBuildMs_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    cloudBuildMs_ =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return {};
 }
 
@@ -89,7 +93,8 @@ SceneFacts Scene::facts() const {
         facts.maxExtinctionPerMm = std::max(facts.maxExtinctionPerMm, extinction);
         if (extinction > 0.0) {
             any = true;
-            facts.minPositiveExtinctionPerMm = std::min(facts.minPositiveExtinctionPerMm, extinction);
+            facts.minPositiveExtinctionPerMm =
+                std::min(facts.minPositiveExtinctionPerMm, extinction);
         }
     }
     facts.anythingVisible = any && (!cloud_ || cloud_->occupiedBlocks > 0);
@@ -98,7 +103,8 @@ SceneFacts Scene::facts() const {
 
 double Scene::defaultGradientFloorPerMm() const {
     constexpr double kShareOfRangePerVoxel = 0.005;
-    return kShareOfRangePerVoxel * (statistics_.max - statistics_.min) / geometry_.smallestVoxelEdgeMm();
+    return kShareOfRangePerVoxel * (statistics_.max - statistics_.min) /
+           geometry_.smallestVoxelEdgeMm();
 }
 
 } // namespace slabcast

@@ -22,7 +22,8 @@ struct Look {
     CompositingSpace space = CompositingSpace::Display;
     Classification classification = Classification::Post;
     std::optional<ShadingParameters> shading; // none: unlit
-    glm::dvec3 bakedLightDirection{0.0, -1.0, 0.0}; // patient space, towards the light; for pre-classified texels
+    glm::dvec3 bakedLightDirection{
+        0.0, -1.0, 0.0}; // patient space, towards the light; for pre-classified texels
 };
 
 struct SkipOptions {
@@ -30,16 +31,17 @@ struct SkipOptions {
     int blockEdgeVoxels = 4;
 };
 
-/// A volume under a transfer function, on the host: what the renderer's textures are made from and can be made from
-/// again. No GL. Not thread-safe; heavy steps use all cores inside.
+/// A volume under a transfer function, on the host: what the renderer's textures are made from and
+/// can be made from again. No GL. Not thread-safe; heavy steps use all cores inside.
 class Scene {
 public:
     /// Turns the voxels into texels and lets the voxels go, so that the peak is volume + texels.
     /// `filterErrorOfFullScale`: what the self-test found (TexelFormatTest::maxFilterError).
     static Scene create(Volume volume, TexelFormat format, double filterErrorOfFullScale);
 
-    /// Replaces the look; builds the table, what pre-classification and skipping need, and nothing else.
-    /// Fails: InvalidTransferFunction, InvalidArgument. Cost: O(voxels) where texels or a cloud are built.
+    /// Replaces the look; builds the table, what pre-classification and skipping need, and nothing
+    /// else. Fails: InvalidTransferFunction, InvalidArgument. Cost: O(voxels) where texels or a
+    /// cloud are built.
     Result<void> setLook(const Look& look, const SkipOptions& skip, int maxTableSize);
 
     SceneFacts facts() const;
@@ -53,10 +55,12 @@ public:
     const ClassifiedTexels* classified() const { return classified_ ? &*classified_ : nullptr; }
     const ProximityCloud* cloud() const { return cloud_ ? &*cloud_ : nullptr; }
     double cloudBuildMs() const { return cloudBuildMs_; }
-    /// Numbers that no other texels and no other look of this process have: textures made from others are stale.
+    /// Numbers that no other texels and no other look of this process have: textures made from
+    /// others are stale.
     int texelsGeneration() const { return texelsGeneration_; }
     int lookGeneration() const { return lookGeneration_; }
-    /// Gradient magnitude below which shading fades where the look does not say: 0.5 % of the data's range per voxel.
+    /// Gradient magnitude below which shading fades where the look does not say: 0.5 % of the
+    /// data's range per voxel.
     double defaultGradientFloorPerMm() const;
 
 private:

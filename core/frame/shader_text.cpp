@@ -9,7 +9,8 @@ namespace slabcast {
 namespace {
 
 /// Name in an include line, quoted or through a define; empty where the line is no include.
-std::string includedFile(const std::string& line, const std::map<std::string, std::string>& defines) {
+std::string includedFile(const std::string& line,
+                         const std::map<std::string, std::string>& defines) {
     constexpr std::string_view kInclude = "#include ";
     if (line.rfind(kInclude, 0) != 0) {
         return {};
@@ -31,7 +32,8 @@ struct Expansion {
         const auto& texts = shaderTexts();
         const auto found = texts.find(file);
         if (found == texts.end()) {
-            return fail(ErrorCode::ShaderCompile, "no shader file named " + file + ": rebuild the library");
+            return fail(ErrorCode::ShaderCompile,
+                        "no shader file named " + file + ": rebuild the library");
         }
         if (!included.insert(file).second) {
             return {};
@@ -57,7 +59,8 @@ struct Expansion {
 
 } // namespace
 
-Result<std::string> expandShader(const std::string& file, const std::map<std::string, std::string>& defines) {
+Result<std::string> expandShader(const std::string& file,
+                                 const std::map<std::string, std::string>& defines) {
     Expansion expansion{defines, {}, "#version 320 es\n"};
     for (const auto& [key, value] : defines) {
         // File choices are for #include alone; they are no GLSL.

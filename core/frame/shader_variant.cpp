@@ -8,7 +8,9 @@ const char* name(Classification classification) {
     return classification == Classification::Post ? "post" : "preclassified";
 }
 
-const char* name(SkipStructure skip) { return skip == SkipStructure::None ? "none" : "proximity"; }
+const char* name(SkipStructure skip) {
+    return skip == SkipStructure::None ? "none" : "proximity";
+}
 
 int unrollLengthFor(int layersPerPlane) {
     const auto fit = std::find_if(kUnrollLengths.begin(), kUnrollLengths.end(),
@@ -33,7 +35,8 @@ std::vector<ShaderVariant> allVariants() {
     for (const int length : lengths) {
         for (int bits = 0; bits < 64; ++bits) {
             const auto bit = [bits](int k) { return (bits >> k & 1) != 0; };
-            const ShaderVariant v{.classification = bit(0) ? Classification::Pre : Classification::Post,
+            const ShaderVariant v{.classification =
+                                      bit(0) ? Classification::Pre : Classification::Post,
                                   .skip = bit(1) ? SkipStructure::Proximity : SkipStructure::None,
                                   .shaded = bit(2),
                                   .exactField = bit(3),

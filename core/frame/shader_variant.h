@@ -18,21 +18,22 @@ const char* name(SkipStructure skip);
 /// Lengths of segments that are written out layer by layer.
 inline constexpr std::array<int, 10> kUnrollLengths = {1, 2, 4, 8, 12, 16, 24, 32, 48, 64};
 
-/// Shortest unrolled length that holds `layersPerPlane`, or 0 where none does: then only the loop form serves.
+/// Shortest unrolled length that holds `layersPerPlane`, or 0 where none does: then only the loop
+/// form serves.
 int unrollLengthFor(int layersPerPlane);
 
-/// Which segment shader. A field exists only where it changes loop structure, resources or outputs; all else is a
-/// uniform, and what a field switches off is absent from the text.
+/// Which segment shader. A field exists only where it changes loop structure, resources or outputs;
+/// all else is a uniform, and what a field switches off is absent from the text.
 ///
-/// | field          | off                            | on                                             |
+/// | field          | off                            | on |
 /// |----------------|--------------------------------|------------------------------------------------|
-/// | classification | Post: field + table            | Pre: one RGBA8 texture, colours baked          |
-/// | skip           | None                           | Proximity: one more texture, two tests         |
-/// | shaded         | colour as classified           | 6 more fields per visible sample (Post only)   |
-/// | exactField     | texture unit's filter          | 8 fetches, float32 (Post only)                 |
-/// | terminates     | every layer                    | leaves when nearly opaque                      |
-/// | unroll         | 0: loop                        | layers written out, from kUnrollLengths        |
-/// | counts         | draws                          | writes work counters instead of colour         |
+/// | classification | Post: field + table            | Pre: one RGBA8 texture, colours baked | |
+/// skip           | None                           | Proximity: one more texture, two tests | |
+/// shaded         | colour as classified           | 6 more fields per visible sample (Post only) |
+/// | exactField     | texture unit's filter          | 8 fetches, float32 (Post only) | |
+/// terminates     | every layer                    | leaves when nearly opaque | | unroll         |
+/// 0: loop                        | layers written out, from kUnrollLengths        | | counts |
+/// draws                          | writes work counters instead of colour         |
 struct ShaderVariant {
     Classification classification = Classification::Post;
     SkipStructure skip = SkipStructure::None;

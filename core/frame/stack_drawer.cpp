@@ -24,7 +24,8 @@ std::vector<glm::vec2> unitPolygons() {
     return vertices;
 }
 
-/// New storage at every upload: the driver keeps the old one until the GPU has read it, nothing waits.
+/// New storage at every upload: the driver keeps the old one until the GPU has read it, nothing
+/// waits.
 template <class T>
 void uploadBlock(GLuint binding, const gl::Buffer& buffer, const T* data, std::size_t bytes) {
     gl::BindBufferBase(GL_UNIFORM_BUFFER, binding, buffer.id());
@@ -41,8 +42,8 @@ void StackDrawer::create() {
     const std::vector<glm::vec2> vertices = unitPolygons();
     gl::BindVertexArray(vertices_.id());
     gl::BindBuffer(GL_ARRAY_BUFFER, polygons_.id());
-    gl::BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(glm::vec2)), vertices.data(),
-                   GL_STATIC_DRAW);
+    gl::BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(glm::vec2)),
+                   vertices.data(), GL_STATIC_DRAW);
     gl::EnableVertexAttribArray(0);
     gl::VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
 }
@@ -59,7 +60,8 @@ void StackDrawer::connect(const gl::Program& program) {
         }
     }
     program.use();
-    const char* const samplers[] = {"volumeTexels", "transferTable", "freeLengths"}; // GpuScene::bind()
+    const char* const samplers[] = {"volumeTexels", "transferTable",
+                                    "freeLengths"}; // GpuScene::bind()
     for (int unit = 0; unit < 3; ++unit) {
         gl::Uniform1i(program.uniform(samplers[unit]), unit);
     }
@@ -80,7 +82,8 @@ void StackDrawer::draw(FrameBlock block, const ProxyStack& stack, bool tight) co
     block.counts = {stack.firstPlane, planes, block.counts.z, planesPerOutline};
 
     uploadBlock(kFrameBinding, frameBlock_, &block, sizeof block);
-    uploadBlock(kOutlineBinding, outlineBlock_, outlines.data(), outlines.size() * sizeof(glm::vec4));
+    uploadBlock(kOutlineBinding, outlineBlock_, outlines.data(),
+                outlines.size() * sizeof(glm::vec4));
     gl::BindVertexArray(vertices_.id());
     const bool square = tight || planesPerOutline > 1;
     gl::DrawArraysInstanced(GL_TRIANGLE_FAN, square ? kCorners : 0, square ? 4 : kCorners, planes);

@@ -7,8 +7,8 @@
 
 namespace slabcast {
 
-/// The unit polygons and the uniform blocks: one instanced draw per view. The vertices never change; a view's planes
-/// are 16 bytes each in a uniform block.
+/// The unit polygons and the uniform blocks: one instanced draw per view. The vertices never
+/// change; a view's planes are 16 bytes each in a uniform block.
 class StackDrawer {
 public:
     static constexpr GLuint kFrameBinding = 0;
@@ -19,7 +19,8 @@ public:
     /// Tells a freshly linked program where its blocks and samplers are.
     static void connect(const gl::Program& program);
 
-    /// `block`'s counts are filled in here. `tight`: outlines are drawn as rectangles, not as 10-gons.
+    /// `block`'s counts are filled in here. `tight`: outlines are drawn as rectangles, not as
+    /// 10-gons.
     void draw(FrameBlock block, const ProxyStack& stack, bool tight) const;
 
     void forget();

@@ -23,8 +23,10 @@ Frustum frustumOf(const glm::dmat4& clipFromView) {
 glm::dmat4 viewFromModel(const OrbitCamera& camera, const BoundingSphere& sphere) {
     const double az = glm::radians(camera.azimuthDegrees);
     const double el = glm::radians(camera.elevationDegrees);
-    const glm::dvec3 outward(std::sin(az) * std::cos(el), -std::cos(az) * std::cos(el), std::sin(el));
-    // An explicit basis instead of lookAt: no cross product with "up", so the poles are like any other place.
+    const glm::dvec3 outward(std::sin(az) * std::cos(el), -std::cos(az) * std::cos(el),
+                             std::sin(el));
+    // An explicit basis instead of lookAt: no cross product with "up", so the poles are like any
+    // other place.
     const glm::dvec3 right(std::cos(az), std::sin(az), 0.0);
     const glm::dvec3 up = glm::cross(outward, right);
     const glm::dmat3 viewFromModelRotation = glm::transpose(glm::dmat3(right, up, outward));
@@ -39,7 +41,8 @@ std::array<View, 2> stereoViews(const View& centre, double ipdMm, double converg
     std::array<View, 2> eyes{centre, centre};
     for (int eye = 0; eye < 2; ++eye) {
         const double offset = (eye == 0 ? -0.5 : 0.5) * ipdMm;
-        eyes[eye].viewFromModel = glm::translate(glm::dmat4(1.0), {-offset, 0.0, 0.0}) * centre.viewFromModel;
+        eyes[eye].viewFromModel =
+            glm::translate(glm::dmat4(1.0), {-offset, 0.0, 0.0}) * centre.viewFromModel;
         eyes[eye].frustum.left -= offset / convergence;
         eyes[eye].frustum.right -= offset / convergence;
     }

@@ -8,7 +8,8 @@
 
 namespace slabcast {
 
-/// The edges of what a view sees, as tangents at unit depth: left < right, bottom < top. Any off-axis frustum.
+/// The edges of what a view sees, as tangents at unit depth: left < right, bottom < top. Any
+/// off-axis frustum.
 struct Frustum {
     double left = -1.0;
     double right = 1.0;
@@ -18,12 +19,14 @@ struct Frustum {
 
 /// Symmetric, from a vertical field of view.
 Frustum symmetricFrustum(double verticalFovDegrees, double aspect);
-/// Of a perspective matrix in GL's conventions, as an app or OpenXR runtime hands it over. Far is not used.
+/// Of a perspective matrix in GL's conventions, as an app or OpenXR runtime hands it over. Far is
+/// not used.
 Frustum frustumOf(const glm::dmat4& clipFromView);
 
 /// One eye. View space looks along -z; "depth" is -z, "distance" is from the eye.
 struct View {
-    glm::dmat4 viewFromModel{1.0}; // viewFromWorld * worldFromModel: rotation, translation, uniform scale
+    glm::dmat4 viewFromModel{
+        1.0}; // viewFromWorld * worldFromModel: rotation, translation, uniform scale
     Frustum frustum;
     double nearDepth = 0.0; // view units; nothing nearer is drawn. 0: from the eye on
 };
@@ -36,8 +39,9 @@ struct Viewport {
     int height = 0;
 };
 
-/// The eye at centre + distance x radius x (sin AZ cos EL, -cos AZ cos EL, sin EL) in patient space (LPS, mm), looking
-/// at the centre, z up. Azimuth 0 sees the face. At the poles the picture's top is the patient's front or back.
+/// The eye at centre + distance x radius x (sin AZ cos EL, -cos AZ cos EL, sin EL) in patient space
+/// (LPS, mm), looking at the centre, z up. Azimuth 0 sees the face. At the poles the picture's top
+/// is the patient's front or back.
 struct OrbitCamera {
     double azimuthDegrees = 0.0;
     double elevationDegrees = 10.0;
@@ -46,8 +50,8 @@ struct OrbitCamera {
 
 glm::dmat4 viewFromModel(const OrbitCamera& camera, const BoundingSphere& sphere);
 
-/// Two eyes `ipdMm` apart (view units), parallel, with off-axis frusta that converge at the depth `convergence`:
-/// left first. Each is a View like any other: drawn alone it gives the same image.
+/// Two eyes `ipdMm` apart (view units), parallel, with off-axis frusta that converge at the depth
+/// `convergence`: left first. Each is a View like any other: drawn alone it gives the same image.
 std::array<View, 2> stereoViews(const View& centre, double ipdMm, double convergence);
 
 } // namespace slabcast

@@ -10,8 +10,9 @@
 #include "core/base/error.h"
 #include "core/gl/functions.h"
 
-/// The GL entry points as function pointers, named as in GL without its prefix: gl::DrawArraysInstanced(...).
-/// One set per process: contexts of different drivers cannot be mixed.
+/// The GL entry points as function pointers, named as in GL without its prefix:
+/// gl::DrawArraysInstanced(...). One set per process: contexts of different drivers cannot be
+/// mixed.
 namespace slabcast::gl {
 
 #define SLABCAST_GL_DECLARE(name, spelling) inline PFNGL##spelling##PROC name = nullptr;

@@ -10,18 +10,21 @@
 
 namespace slabcast::gl {
 
-/// A framebuffer with textures of its own: layers in between, counters, pictures that are read back.
-/// Tested by: renderer_gl_test.cpp
+/// A framebuffer with textures of its own: layers in between, counters, pictures that are read
+/// back. Tested by: renderer_gl_test.cpp
 class ColorTargets {
 public:
-    /// One texture per format (GL_RGBA8, GL_RGBA16F or GL_RGBA32F). Does nothing where size and formats are the same.
-    /// Leaves the framebuffer bound. Fails: DeviceOutOfMemory (the framebuffer is not complete).
+    /// One texture per format (GL_RGBA8, GL_RGBA16F or GL_RGBA32F). Does nothing where size and
+    /// formats are the same. Leaves the framebuffer bound. Fails: DeviceOutOfMemory (the
+    /// framebuffer is not complete).
     Result<void> resize(int width, int height, const std::vector<GLenum>& formats);
 
-    /// Makes it the draw framebuffer with its whole size as viewport, every texture filled with `color`.
+    /// Makes it the draw framebuffer with its whole size as viewport, every texture filled with
+    /// `color`.
     void begin(glm::vec4 color = glm::vec4(0.0F)) const;
 
-    /// Waits for the GPU and reads one texture, rows from the bottom up. 8-bit values come as k/255.
+    /// Waits for the GPU and reads one texture, rows from the bottom up. 8-bit values come as
+    /// k/255.
     std::vector<glm::vec4> read(std::size_t index = 0) const;
 
     int width() const { return width_; }

@@ -16,9 +16,9 @@ struct DebugMessage {
     bool isError() const { return type == GL_DEBUG_TYPE_ERROR; }
 };
 
-/// Hears the driver's debug output while it lives, in the call that causes it; counts errors and keeps the first.
-/// A context without the debug flag may stay silent: takeError() sees errors there too.
-/// Tested by: gl_objects_gl_test.cpp
+/// Hears the driver's debug output while it lives, in the call that causes it; counts errors and
+/// keeps the first. A context without the debug flag may stay silent: takeError() sees errors there
+/// too. Tested by: gl_objects_gl_test.cpp
 class DebugOutput {
 public:
     using Sink = std::function<void(const DebugMessage&)>;

@@ -9,10 +9,10 @@
 
 namespace slabcast::gl {
 
-/// GPU time of a span of commands, from a ring of queries that is never waited for: a result arrives a few frames
-/// late, a span that finds the ring full goes unmeasured, and results of a disjoint period are dropped.
-/// Spans do not nest. Without the extension nothing is measured and nothing is called.
-/// Source: EXT_disjoint_timer_query. Tested by: gl_objects_gl_test.cpp
+/// GPU time of a span of commands, from a ring of queries that is never waited for: a result
+/// arrives a few frames late, a span that finds the ring full goes unmeasured, and results of a
+/// disjoint period are dropped. Spans do not nest. Without the extension nothing is measured and
+/// nothing is called. Source: EXT_disjoint_timer_query. Tested by: gl_objects_gl_test.cpp
 class GpuTimer {
 public:
     GpuTimer() = default;

@@ -49,9 +49,9 @@ private:
     bool owned_ = false;
 };
 
-/// Objects are made here and labelled at birth, so that debuggers and driver messages name them. GL creates an
-/// object when its name is first bound; make() binds and restores what was bound. Contract: the API is loaded.
-/// Tested by: gl_objects_gl_test.cpp
+/// Objects are made here and labelled at birth, so that debuggers and driver messages name them. GL
+/// creates an object when its name is first bound; make() binds and restores what was bound.
+/// Contract: the API is loaded. Tested by: gl_objects_gl_test.cpp
 class Buffer : public Object<Buffer> {
 public:
     /// Leaves the GL_COPY_WRITE_BUFFER binding at 0.

@@ -19,7 +19,8 @@ public:
     explicit operator bool() const { return static_cast<bool>(object_); }
     void use() const { UseProgram(object_.id()); }
 
-    /// -1 where the program has no such uniform, which GL's Uniform calls ignore. Looked up once per name.
+    /// -1 where the program has no such uniform, which GL's Uniform calls ignore. Looked up once
+    /// per name.
     GLint uniform(std::string_view name) const;
 
     /// Compile and link, until the driver answered whether both went well.

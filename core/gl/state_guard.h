@@ -6,11 +6,14 @@
 
 namespace slabcast::gl {
 
-/// Restores the GL state that drawing a volume touches, so that a host's own renderer finds what it left:
+/// Restores the GL state that drawing a volume touches, so that a host's own renderer finds what it
+/// left:
 /// - program, vertex array, draw and read framebuffer;
 /// - viewport, scissor box; colour mask, clear colour, depth mask; blend functions and equations;
-/// - whether blend, cull face, depth test, dither, rasterizer discard, scissor and stencil test are enabled;
-/// - array, pixel unpack and pixel pack buffer, uniform buffer (generic and indexed 0 and 1, with their ranges);
+/// - whether blend, cull face, depth test, dither, rasterizer discard, scissor and stencil test are
+/// enabled;
+/// - array, pixel unpack and pixel pack buffer, uniform buffer (generic and indexed 0 and 1, with
+/// their ranges);
 /// - pixel pack and unpack alignment, row length, image height and skips;
 /// - active unit; on units 0 to 7 the 2D, 2D array and 3D texture and the sampler.
 /// State per draw buffer (Enablei, ColorMaski, BlendFunci) is neither touched nor restored.
@@ -22,7 +25,8 @@ public:
     StateGuard(const StateGuard&) = delete;
     StateGuard& operator=(const StateGuard&) = delete;
 
-    /// Tightly packed pixels from and to client memory, whatever the host had set: before uploads and reads.
+    /// Tightly packed pixels from and to client memory, whatever the host had set: before uploads
+    /// and reads.
     static void usePlainPixelTransfer();
 
     static constexpr int kUnits = 8;

@@ -10,9 +10,9 @@
 
 namespace slabcast {
 
-/// Which interpolation cells a TF makes visible, decided from the minimum and maximum of a cell's corner codes.
-/// A cell with codes [a, b] is visible iff firstVisible[a] <= reach[b].
-/// Borrows the codes: they must outlive it.
+/// Which interpolation cells a TF makes visible, decided from the minimum and maximum of a cell's
+/// corner codes. A cell with codes [a, b] is visible iff firstVisible[a] <= reach[b]. Borrows the
+/// codes: they must outlive it.
 struct CellVisibility {
     const TexelCodes* texels = nullptr;
     std::vector<std::uint16_t>
@@ -22,14 +22,15 @@ struct CellVisibility {
     bool visible(std::uint16_t minCode, std::uint16_t maxCode) const {
         return firstVisible[minCode] <= reach[maxCode];
     }
-    /// Whether any cell of the volume is: exact, from the smallest and largest code. Cost: one pass over the codes.
+    /// Whether any cell of the volume is: exact, from the smallest and largest code. Cost: one pass
+    /// over the codes.
     bool anyVisible() const;
 };
 
-/// For post-classification: the table is non-zero anywhere between the cell's minimum and maximum, widened by one
-/// table texel and by `filterErrorSampled` (what the texture unit's filter may add, in sampled units). Where higher
-/// codes are lower values, table texels are counted from the table's end. At most 65,535 table texels.
-/// Tested by: cell_visibility_test.cpp
+/// For post-classification: the table is non-zero anywhere between the cell's minimum and maximum,
+/// widened by one table texel and by `filterErrorSampled` (what the texture unit's filter may add,
+/// in sampled units). Where higher codes are lower values, table texels are counted from the
+/// table's end. At most 65,535 table texels. Tested by: cell_visibility_test.cpp
 CellVisibility cellVisibility(const TexelCodes& codes, const Texels& texels,
                               const TransferTable& table, double filterErrorSampled);
 

@@ -122,8 +122,7 @@ TexelFormatTest judgeTexelFormat(TexelFormat format, std::span<const FilterSampl
                                 filter.shareAtExcess);
     } else {
         test.usable = true;
-        test.reason =
-            formatted("filtered to within %.2g of full scale", test.maxFilterError);
+        test.reason = formatted("filtered to within %.2g of full scale", test.maxFilterError);
     }
     return test;
 }

@@ -10,12 +10,13 @@
 
 namespace slabcast {
 
-/// What drawing from a tiny 3D texture and reading the result back found out about one format on this device.
+/// What drawing from a tiny 3D texture and reading the result back found out about one format on
+/// this device.
 struct TexelFormatTest {
     TexelFormat format = TexelFormat::R8;
     bool usable = false;
-    /// Largest deviation from exact trilinear interpolation, relative to full scale (the difference of the two
-    /// texels at the ends of the format's range). Exact formats are not filtered: 0.
+    /// Largest deviation from exact trilinear interpolation, relative to full scale (the difference
+    /// of the two texels at the ends of the format's range). Exact formats are not filtered: 0.
     double maxFilterError = 0.0;
     /// Largest deviation of a texelFetch from the texel, relative to the format's full scale.
     double maxFetchError = 0.0;
@@ -36,20 +37,22 @@ struct FetchSample {
     double measured = 0.0;
 };
 
-/// Usable where every fetch gives its texel and every filtered sample stays within 1/256 of the difference per axis
-/// (weights of eight bits, cut off) and one rounding step of the format. Pure. Tested by: texel_format_gl_test.cpp
+/// Usable where every fetch gives its texel and every filtered sample stays within 1/256 of the
+/// difference per axis (weights of eight bits, cut off) and one rounding step of the format. Pure.
+/// Tested by: texel_format_gl_test.cpp
 TexelFormatTest judgeTexelFormat(TexelFormat format, std::span<const FilterSample> filtered,
                                  std::span<const FetchSample> fetched);
 
-/// One entry per format, in the enumeration's order; those that the device lacks are entries that are not usable.
-/// Extensions promise that a format exists, not that it is filtered (EXT_texture_norm16), and no query tells.
-/// Saves and restores the GL state. Cost: 40 small draws, once per device. Tested by: texel_format_gl_test.cpp
+/// One entry per format, in the enumeration's order; those that the device lacks are entries that
+/// are not usable. Extensions promise that a format exists, not that it is filtered
+/// (EXT_texture_norm16), and no query tells. Saves and restores the GL state. Cost: 40 small draws,
+/// once per device. Tested by: texel_format_gl_test.cpp
 std::vector<TexelFormatTest> selfTestTexelFormats(const gl::Caps& caps);
 
-/// R8 for 8-bit voxels; for wider ones R16, or R16F where R16 is not usable: R16 keeps every 16-bit integer and
-/// rounds other data 16 times finer. The fetched formats if `exact`, or if nothing else is usable: two bytes for
-/// integers of up to 16 bits, float32 for the rest. Pure. `reason`, if not null, receives one line.
-/// Tested by: texel_format_gl_test.cpp
+/// R8 for 8-bit voxels; for wider ones R16, or R16F where R16 is not usable: R16 keeps every 16-bit
+/// integer and rounds other data 16 times finer. The fetched formats if `exact`, or if nothing else
+/// is usable: two bytes for integers of up to 16 bits, float32 for the rest. Pure. `reason`, if not
+/// null, receives one line. Tested by: texel_format_gl_test.cpp
 TexelFormat chooseTexelFormat(VoxelType type, const VolumeStatistics& statistics, bool exact,
                               std::span<const TexelFormatTest> tests, std::string* reason);
 

@@ -91,7 +91,8 @@ bool isExact(TexelFormat format) {
 }
 
 double fullScaleSampled(TexelFormat format) {
-    return visitTexelFormat(format, [](auto codec) { return codec.kExactUnits / codec.kUnitsPerSampled; });
+    return visitTexelFormat(format,
+                            [](auto codec) { return codec.kExactUnits / codec.kUnitsPerSampled; });
 }
 
 Texels encodeTexels(const Volume& volume, const VolumeStatistics& statistics, TexelFormat format) {

@@ -34,7 +34,8 @@ struct VolumeGeometry {
 
     std::int64_t voxelCount() const;
     double smallestVoxelEdgeMm() const;
-    /// uvw is [0,1]^3 over the whole box, outer half voxels included; the centre of voxel i lies at (i+0.5)/dims.
+    /// uvw is [0,1]^3 over the whole box, outer half voxels included; the centre of voxel i lies at
+    /// (i+0.5)/dims.
     glm::dmat4 modelFromUvw() const;
     glm::dmat4 uvwFromModel() const;
     /// Around all eight corners of the box, also of a sheared one.
@@ -59,15 +60,16 @@ struct Volume {
     double valueAt(glm::ivec3 voxel) const;
 };
 
-/// Everything that a loader must hold before a volume may be used: positive dims whose product fits,
-/// as many bytes as they ask for, finite positive spacing, direction cosines that span space,
+/// Everything that a loader must hold before a volume may be used: positive dims whose product
+/// fits, as many bytes as they ask for, finite positive spacing, direction cosines that span space,
 /// finite non-zero slope. Replaces and counts non-finite voxels, and those outside float32's range.
 /// Bytes after the last voxel are dropped; direction cosines become exactly unit length.
 /// Fails: EmptyVolume, SizeOverflow, FileTruncated, InvalidGeometry, InvalidArgument (rescaling).
 /// Tested by: volume_test.cpp
 Result<Volume> validated(Volume volume);
 
-/// dims.x * dims.y * dims.z * bytes, or SizeOverflow / EmptyVolume. For loaders, before they allocate.
+/// dims.x * dims.y * dims.z * bytes, or SizeOverflow / EmptyVolume. For loaders, before they
+/// allocate.
 Result<std::int64_t> checkedByteCount(glm::i64vec3 dims, VoxelType type);
 
 } // namespace slabcast

@@ -29,14 +29,17 @@ Result<MemoryForecast> forecastMemory(glm::ivec3 dims, VoxelType type, TexelForm
 Result<std::int64_t> forecastTextureBytes(glm::ivec3 dims, TexelFormat format);
 
 /// Whether the texture stays within the device's 3D texture limit and the budget, if there is one.
-/// Fails: VolumeTooLarge, naming the limit and the smallest `--downsample N` that fits; EmptyVolume, SizeOverflow.
+/// Fails: VolumeTooLarge, naming the limit and the smallest `--downsample N` that fits;
+/// EmptyVolume, SizeOverflow.
 Result<void> checkFits(glm::ivec3 dims, TexelFormat format, const gl::Caps& caps,
                        std::optional<std::int64_t> gpuBudgetBytes = std::nullopt);
 
-/// The uploads below leave the GL state as they found it, go slab by slab, clamp to the edge and have one level.
-/// Fail: VolumeTooLarge, DeviceOutOfMemory, Internal (another GL error). Tested by: texel_format_gl_test.cpp
+/// The uploads below leave the GL state as they found it, go slab by slab, clamp to the edge and
+/// have one level. Fail: VolumeTooLarge, DeviceOutOfMemory, Internal (another GL error). Tested by:
+/// texel_format_gl_test.cpp
 
-/// Scalars: R8, R16 and R16F filtered; Rg8Exact (r high byte, g low byte) and R32fExact for texelFetch.
+/// Scalars: R8, R16 and R16F filtered; Rg8Exact (r high byte, g low byte) and R32fExact for
+/// texelFetch.
 Result<gl::Texture> uploadTexels(const Texels& texels, const gl::Caps& caps);
 
 /// Pre-classified texels, RGBA8, filtered. `texels` holds dims.x * dims.y * dims.z, x fastest.

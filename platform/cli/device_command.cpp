@@ -10,11 +10,11 @@ Result<void> deviceCommand() {
         return tl::unexpected(session.error());
     }
     const gl::Caps& caps = session->caps;
-    fmt::print("{}\n  vendor     {}\n  driver     {}\n  context    {}\n", caps.renderer, caps.vendor, caps.driver,
-               session->context.description());
+    fmt::print("{}\n  vendor     {}\n  driver     {}\n  context    {}\n", caps.renderer,
+               caps.vendor, caps.driver, session->context.description());
     fmt::print("  software   {}\n", caps.isSoftware ? "yes: its times are not a headset's" : "no");
-    fmt::print("  3D limit   {} texels along an edge\n  2D limit   {}\n  uniform block {} bytes\n", caps.maxTexture3DSize,
-               caps.maxTextureSize, caps.maxUniformBlockSize);
+    fmt::print("  3D limit   {} texels along an edge\n  2D limit   {}\n  uniform block {} bytes\n",
+               caps.maxTexture3DSize, caps.maxTextureSize, caps.maxUniformBlockSize);
     const struct {
         const char* what;
         bool has;
@@ -31,8 +31,9 @@ Result<void> deviceCommand() {
     }
     fmt::print("texel formats, by drawing and reading back:\n");
     for (const TexelFormatTest& test : session->formats) {
-        fmt::print("  {:<12} {:<9} filter error {:.3g}, fetch error {:.3g}: {}\n", name(test.format),
-                   test.usable ? "usable" : "unusable", test.maxFilterError, test.maxFetchError, test.reason);
+        fmt::print("  {:<12} {:<9} filter error {:.3g}, fetch error {:.3g}: {}\n",
+                   name(test.format), test.usable ? "usable" : "unusable", test.maxFilterError,
+                   test.maxFetchError, test.reason);
     }
     VolumeStatistics ct;
     ct.min = -1024.0;
@@ -41,8 +42,10 @@ Result<void> deviceCommand() {
     for (const VoxelType type : {VoxelType::U8, VoxelType::I16, VoxelType::F32}) {
         for (const bool exact : {false, true}) {
             std::string reason;
-            const TexelFormat format = chooseTexelFormat(type, ct, exact, session->formats, &reason);
-            fmt::print("  {:<6} {:<8} {:<12} {}\n", name(type), exact ? "--exact" : "", name(format), reason);
+            const TexelFormat format =
+                chooseTexelFormat(type, ct, exact, session->formats, &reason);
+            fmt::print("  {:<6} {:<8} {:<12} {}\n", name(type), exact ? "--exact" : "",
+                       name(format), reason);
         }
     }
     return {};

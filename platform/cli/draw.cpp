@@ -22,7 +22,8 @@ double convergenceDepth(const SceneOptions& options, const BoundingSphere& spher
 glm::dmat4 turned(double degrees, const BoundingSphere& sphere) {
     const glm::dmat4 there = glm::translate(glm::dmat4(1.0), sphere.centreMm);
     const glm::dmat4 back = glm::translate(glm::dmat4(1.0), -sphere.centreMm);
-    return there * glm::rotate(glm::dmat4(1.0), glm::radians(degrees), glm::dvec3(0.0, 0.0, 1.0)) * back;
+    return there * glm::rotate(glm::dmat4(1.0), glm::radians(degrees), glm::dvec3(0.0, 0.0, 1.0)) *
+           back;
 }
 
 } // namespace
@@ -37,7 +38,8 @@ Result<Stage> Stage::open(const SceneOptions& options) {
     if (!loaded) {
         return tl::unexpected(loaded.error());
     }
-    Result<TransferFunction> tf = chooseTransferFunction(options.tf, loaded->scene, loaded->info.modality);
+    Result<TransferFunction> tf =
+        chooseTransferFunction(options.tf, loaded->scene, loaded->info.modality);
     if (!tf) {
         return tl::unexpected(tf.error());
     }
@@ -50,9 +52,12 @@ Result<Stage> Stage::open(const SceneOptions& options) {
     // Towards the eye: a baked head light stands where the eye is at the first frame.
     const glm::dmat3 rotation(viewFromModel(options.camera, sphere));
     look.bakedLightDirection = glm::transpose(rotation) * glm::dvec3(0.0, 0.0, 1.0);
-    const bool needsCloud = s.tighten || s.skip.value_or(SkipStructure::Proximity) == SkipStructure::Proximity;
-    const SkipOptions skip{needsCloud ? SkipStructure::Proximity : SkipStructure::None, options.skipBlockEdge};
-    const int maxTable = static_cast<int>(std::min<std::int64_t>(4096, session->caps.maxTextureSize));
+    const bool needsCloud =
+        s.tighten || s.skip.value_or(SkipStructure::Proximity) == SkipStructure::Proximity;
+    const SkipOptions skip{needsCloud ? SkipStructure::Proximity : SkipStructure::None,
+                           options.skipBlockEdge};
+    const int maxTable =
+        static_cast<int>(std::min<std::int64_t>(4096, session->caps.maxTextureSize));
     progress.show("finding what the transfer function makes visible");
     if (Result<void> set = loaded->scene.setLook(look, skip, maxTable); !set) {
         return tl::unexpected(set.error());
@@ -100,7 +105,8 @@ std::vector<ViewTarget> Stage::views(double turnDegrees) const {
     if (eyes == 1) {
         return {{centre, target_.framebuffer(), {0, 0, width, height}, encoding}};
     }
-    const auto pair = stereoViews(centre, *options_.stereoIpdMm, convergenceDepth(options_, sphere));
+    const auto pair =
+        stereoViews(centre, *options_.stereoIpdMm, convergenceDepth(options_, sphere));
     return {{pair[0], target_.framebuffer(), {0, 0, width, height}, encoding},
             {pair[1], target_.framebuffer(), {width, 0, width, height}, encoding}};
 }
@@ -108,8 +114,9 @@ std::vector<ViewTarget> Stage::views(double turnDegrees) const {
 Result<double> Stage::drawTimed(const FramePlan& plan, double turnDegrees) {
     glm::vec4 clear(0.0F);
     if (options_.background) {
-        const glm::dvec3 stored =
-            space_ == CompositingSpace::Display ? *options_.background : linearFromSrgb(*options_.background);
+        const glm::dvec3 stored = space_ == CompositingSpace::Display
+                                      ? *options_.background
+                                      : linearFromSrgb(*options_.background);
         clear = glm::vec4(glm::dvec4(stored, 1.0));
     }
     target_.begin(clear);
@@ -120,10 +127,13 @@ Result<double> Stage::drawTimed(const FramePlan& plan, double turnDegrees) {
         return tl::unexpected(drawn.error());
     }
     gl::Finish();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+        .count();
 }
 
-Result<WorkCounters> Stage::countWork(const FramePlan& plan) { return renderer_.countWork(scene(), plan, views(0.0)); }
+Result<WorkCounters> Stage::countWork(const FramePlan& plan) {
+    return renderer_.countWork(scene(), plan, views(0.0));
+}
 
 std::vector<glm::vec4> Stage::picture(bool encoded) const {
     std::vector<glm::vec4> pixels = target_.read();
@@ -148,7 +158,9 @@ std::vector<glm::vec4> Stage::picture(bool encoded) const {
 FrameTimes summarise(std::vector<double> ms) {
     std::sort(ms.begin(), ms.end());
     const auto at = [&ms](double quantile) {
-        return ms.empty() ? 0.0 : ms[static_cast<std::size_t>(quantile * static_cast<double>(ms.size() - 1) + 0.5)];
+        return ms.empty() ? 0.0
+                          : ms[static_cast<std::size_t>(
+                                quantile * static_cast<double>(ms.size() - 1) + 0.5)];
     };
     return {at(0.5), at(0.0), at(1.0), at(0.1), at(0.9), static_cast<int>(ms.size())};
 }
@@ -188,7 +200,8 @@ nlohmann::json toJson(const FramePlan& plan) {
 }
 
 nlohmann::json toJson(const FrameTimes& t) {
-    return {{"median", t.median}, {"min", t.min}, {"max", t.max}, {"p10", t.p10}, {"p90", t.p90}, {"n", t.count}};
+    return {{"median", t.median}, {"min", t.min}, {"max", t.max},
+            {"p10", t.p10},       {"p90", t.p90}, {"n", t.count}};
 }
 
 nlohmann::json toJson(const Result<WorkCounters>& counters) {
@@ -202,6 +215,8 @@ nlohmann::json toJson(const Result<WorkCounters>& counters) {
             {"skip_fetches", counters->skipFetches}};
 }
 
-std::string commit() { return SLABCAST_COMMIT; }
+std::string commit() {
+    return SLABCAST_COMMIT;
+}
 
 } // namespace slabcast

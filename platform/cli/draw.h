@@ -21,14 +21,14 @@ public:
     /// prepare(), the framebuffer of the plan's format included.
     Result<void> prepare(const FramePlan& plan);
 
-    /// Clears to the background and draws with the volume turned by `turnDegrees`; returns the time in ms until the
-    /// GPU has finished.
+    /// Clears to the background and draws with the volume turned by `turnDegrees`; returns the time
+    /// in ms until the GPU has finished.
     Result<double> drawTimed(const FramePlan& plan, double turnDegrees);
 
     Result<WorkCounters> countWork(const FramePlan& plan);
 
-    /// The picture, top row first, over the background: sRGB-encoded if `encoded`, else light. Alpha 1 unless the
-    /// background is transparent, then not premultiplied if encoded.
+    /// The picture, top row first, over the background: sRGB-encoded if `encoded`, else light.
+    /// Alpha 1 unless the background is transparent, then not premultiplied if encoded.
     std::vector<glm::vec4> picture(bool encoded) const;
 
     const Scene& scene() const { return loaded_.scene; }

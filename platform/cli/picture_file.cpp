@@ -11,13 +11,14 @@ Result<bool> pictureIsEncoded(const std::filesystem::path& path) {
     const std::string ending = path.extension().string();
     if (ending != ".png" && ending != ".exr") {
         return fail(ErrorCode::InvalidArgument,
-                    path.string() + ": pictures are written as .png or .exr: give a name that ends so");
+                    path.string() +
+                        ": pictures are written as .png or .exr: give a name that ends so");
     }
     return checkWritable(path).map([&] { return ending == ".png"; });
 }
 
-Result<void> savePicture(const std::filesystem::path& path, glm::ivec2 size, const std::vector<glm::vec4>& pixels,
-                         bool opaque) {
+Result<void> savePicture(const std::filesystem::path& path, glm::ivec2 size,
+                         const std::vector<glm::vec4>& pixels, bool opaque) {
     const Result<bool> encoded = pictureIsEncoded(path);
     if (!encoded) {
         return tl::unexpected(encoded.error());
@@ -30,10 +31,12 @@ Result<void> savePicture(const std::filesystem::path& path, glm::ivec2 size, con
     bytes.reserve(pixels.size() * channels);
     for (const glm::vec4& pixel : pixels) {
         for (int c = 0; c < channels; ++c) {
-            bytes.push_back(static_cast<std::uint8_t>(std::lround(glm::clamp(pixel[c], 0.0F, 1.0F) * 255.0F)));
+            bytes.push_back(
+                static_cast<std::uint8_t>(std::lround(glm::clamp(pixel[c], 0.0F, 1.0F) * 255.0F)));
         }
     }
-    return savePng(path, size.x, size.y, bytes.data(), opaque ? PngChannels::Rgb : PngChannels::Rgba);
+    return savePng(path, size.x, size.y, bytes.data(),
+                   opaque ? PngChannels::Rgb : PngChannels::Rgba);
 }
 
 } // namespace slabcast

@@ -4,8 +4,8 @@
 
 namespace slabcast {
 
-/// One line on stderr that is written over as a long step goes on and gone when it is done; silent where stderr is
-/// no terminal.
+/// One line on stderr that is written over as a long step goes on and gone when it is done; silent
+/// where stderr is no terminal.
 class Progress {
 public:
     Progress() = default;

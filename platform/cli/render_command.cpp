@@ -11,8 +11,8 @@ namespace slabcast {
 namespace {
 
 void explain(const FramePlan& plan, const VolumeInfo& info, const Scene& scene) {
-    fmt::print("texels {}: {}; off by at most {:.4g} {}\n", name(scene.texels().format), info.formatReason,
-               scene.texels().maxQuantisationError, info.unit);
+    fmt::print("texels {}: {}; off by at most {:.4g} {}\n", name(scene.texels().format),
+               info.formatReason, scene.texels().maxQuantisationError, info.unit);
     constexpr double kMib = 1048576.0;
     fmt::print("memory: {:.1f} MiB for the texels on the GPU, {:.1f} MiB on the host\n",
                static_cast<double>(info.forecast.gpuTexelBytes) / kMib,
@@ -39,7 +39,8 @@ nlohmann::json stats(Stage& stage, const FramePlan& plan, const std::vector<doub
               {"gpu_other_bytes", gpu.otherBytes}}}};
 }
 
-/// Both outputs are known to be writable before any work is done, so that neither is left without the other.
+/// Both outputs are known to be writable before any work is done, so that neither is left without
+/// the other.
 Result<bool> checkOutputs(const RenderOptions& options) {
     if (!options.statsFile.empty()) {
         if (const Result<void> sound = checkWritable(options.statsFile); !sound) {
@@ -47,8 +48,10 @@ Result<bool> checkOutputs(const RenderOptions& options) {
         }
         if (std::filesystem::absolute(options.statsFile).lexically_normal() ==
             std::filesystem::absolute(options.output).lexically_normal()) {
-            return fail(ErrorCode::InvalidArgument,
-                        options.statsFile + ": is named for both picture and statistics; give --stats another name");
+            return fail(
+                ErrorCode::InvalidArgument,
+                options.statsFile +
+                    ": is named for both picture and statistics; give --stats another name");
         }
     }
     return pictureIsEncoded(options.output);
@@ -76,7 +79,8 @@ Result<void> renderCommand(const RenderOptions& options) {
         explain(*plan, stage->info(), stage->scene());
     }
     if (options.frames > 1) {
-        (void)stage->drawTimed(*plan, 0.0); // the first frame after a compile also pays for the driver's own work
+        (void)stage->drawTimed(
+            *plan, 0.0); // the first frame after a compile also pays for the driver's own work
     }
     std::vector<double> times;
     Progress progress;
@@ -92,7 +96,8 @@ Result<void> renderCommand(const RenderOptions& options) {
             picture = stage->picture(*encoded);
         }
     }
-    if (Result<void> saved = savePicture(options.output, options.size, picture, options.background.has_value());
+    if (Result<void> saved =
+            savePicture(options.output, options.size, picture, options.background.has_value());
         !saved) {
         return saved;
     }

@@ -46,7 +46,8 @@ Result<Volume> openVolume(const InputOptions& options) {
         }
         volume = loadVolume(options.volume, load);
     }
-    return volume && options.downsample > 1 ? downsample(*volume, glm::ivec3(options.downsample)) : volume;
+    return volume && options.downsample > 1 ? downsample(*volume, glm::ivec3(options.downsample))
+                                            : volume;
 }
 
 Result<LoadedScene> openScene(const InputOptions& options, const Session& session) {
@@ -61,16 +62,18 @@ Result<LoadedScene> openScene(const InputOptions& options, const Session& sessio
                     .spacingMm = volume->geometry.spacingMm,
                     .bytes = static_cast<std::int64_t>(volume->voxels.size())};
     if (volume->nonFiniteVoxels > 0) {
-        fmt::print(stderr, "slabcast: {}: {} voxels are NaN or infinite: treated as the lowest value\n", info.name,
-                   volume->nonFiniteVoxels);
+        fmt::print(stderr,
+                   "slabcast: {}: {} voxels are NaN or infinite: treated as the lowest value\n",
+                   info.name, volume->nonFiniteVoxels);
     }
     const VolumeStatistics statistics = computeStatistics(*volume);
     info.modality = likelyModality(*volume, statistics);
-    const TexelFormat format =
-        chooseTexelFormat(volume->type, statistics, options.exact, session.formats, &info.formatReason);
+    const TexelFormat format = chooseTexelFormat(volume->type, statistics, options.exact,
+                                                 session.formats, &info.formatReason);
     const std::optional<std::int64_t> budget =
-        options.gpuBudgetMib ? std::optional(static_cast<std::int64_t>(*options.gpuBudgetMib * 1048576.0))
-                             : std::nullopt;
+        options.gpuBudgetMib
+            ? std::optional(static_cast<std::int64_t>(*options.gpuBudgetMib * 1048576.0))
+            : std::nullopt;
     if (Result<void> fits = checkFits(info.dims, format, session.caps, budget); !fits) {
         return tl::unexpected(fits.error());
     }
@@ -85,7 +88,8 @@ Result<LoadedScene> openScene(const InputOptions& options, const Session& sessio
     return LoadedScene{Scene::create(std::move(*volume), format, filterError), std::move(info)};
 }
 
-Result<TransferFunction> chooseTransferFunction(const std::string& tf, const Scene& scene, Modality modality) {
+Result<TransferFunction> chooseTransferFunction(const std::string& tf, const Scene& scene,
+                                                Modality modality) {
     if (tf.size() > 5 && tf.substr(tf.size() - 5) == ".json") {
         return loadTransferFunction(tf);
     }

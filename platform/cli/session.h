@@ -51,11 +51,13 @@ struct LoadedScene {
     VolumeInfo info;
 };
 
-/// Chooses the texel format, checks that it fits before anything is allocated on the GPU, builds the scene.
+/// Chooses the texel format, checks that it fits before anything is allocated on the GPU, builds
+/// the scene.
 Result<LoadedScene> openScene(const InputOptions& options, const Session& session);
 
 /// `tf`: a preset's name, a JSON file, or empty for the default of the volume's modality and range.
-Result<TransferFunction> chooseTransferFunction(const std::string& tf, const Scene& scene, Modality modality);
+Result<TransferFunction> chooseTransferFunction(const std::string& tf, const Scene& scene,
+                                                Modality modality);
 
 /// Host memory at its peak so far, bytes (VmHWM).
 std::int64_t peakHostBytes();

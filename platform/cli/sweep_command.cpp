@@ -32,12 +32,15 @@ std::vector<Series> seriesOf(const Settings& settings) {
         series.push_back({SkipStructure::Proximity, false});
     }
     if (settings.tighten) {
-        series.push_back({settings.skip == SkipStructure::None ? SkipStructure::None : SkipStructure::Proximity, true});
+        series.push_back(
+            {settings.skip == SkipStructure::None ? SkipStructure::None : SkipStructure::Proximity,
+             true});
     }
     return series;
 }
 
-/// Layers per plane to measure: as asked for, or the unroll list; 0 stands for all of them, ray casting.
+/// Layers per plane to measure: as asked for, or the unroll list; 0 stands for all of them, ray
+/// casting.
 std::vector<int> layerCounts(const SweepOptions& options, int total) {
     std::vector<int> counts = options.layersPerPlane;
     if (counts.empty()) {
@@ -50,7 +53,8 @@ std::vector<int> layerCounts(const SweepOptions& options, int total) {
     return counts;
 }
 
-/// The forms that a row is measured in: the settings' one, or on `auto` what the plan takes for the length.
+/// The forms that a row is measured in: the settings' one, or on `auto` what the plan takes for the
+/// length.
 std::vector<Settings> rowSettings(const SweepOptions& options, int total) {
     std::vector<Settings> rows;
     for (const Series& series : seriesOf(options.settings)) {
@@ -68,14 +72,16 @@ std::vector<Settings> rowSettings(const SweepOptions& options, int total) {
 }
 
 /// Box-filtered to a small edge.
-std::pair<glm::ivec2, std::vector<glm::vec4>> thumbnail(glm::ivec2 size, const std::vector<glm::vec4>& picture) {
+std::pair<glm::ivec2, std::vector<glm::vec4>> thumbnail(glm::ivec2 size,
+                                                        const std::vector<glm::vec4>& picture) {
     const int shrink = std::max(1, std::max(size.x, size.y) / kThumbnailEdge);
     const glm::ivec2 small = glm::max(size / shrink, glm::ivec2(1));
     std::vector<glm::vec4> pixels(static_cast<std::size_t>(small.x) * small.y, glm::vec4(0.0F));
     for (int y = 0; y < small.y * shrink && y < size.y; ++y) {
         for (int x = 0; x < small.x * shrink && x < size.x; ++x) {
             pixels[static_cast<std::size_t>(y / shrink) * small.x + x / shrink] +=
-                picture[static_cast<std::size_t>(y) * size.x + x] / static_cast<float>(shrink * shrink);
+                picture[static_cast<std::size_t>(y) * size.x + x] /
+                static_cast<float>(shrink * shrink);
         }
     }
     return {small, std::move(pixels)};
@@ -89,8 +95,10 @@ std::string timestamp() {
 }
 
 /// One row: plan, frames of one turn, work, thumbnail.
-Result<json> measureRow(Stage& stage, const SweepOptions& options, const Settings& settings, int index) {
-    const Result<FramePlan> plan = slabcast::plan(stage.scene().facts(), settings, stage.session().caps, {});
+Result<json> measureRow(Stage& stage, const SweepOptions& options, const Settings& settings,
+                        int index) {
+    const Result<FramePlan> plan =
+        slabcast::plan(stage.scene().facts(), settings, stage.session().caps, {});
     if (!plan) {
         return tl::unexpected(plan.error());
     }
@@ -112,14 +120,17 @@ Result<json> measureRow(Stage& stage, const SweepOptions& options, const Setting
         firstMs = *ms;
         const auto [size, pixels] = thumbnail(options.size, stage.picture(true));
         thumbnailFile = fmt::format("thumbnails/{:02}.png", index);
-        if (Result<void> saved = savePicture(fs::path(options.outputFolder) / thumbnailFile, size, pixels, true); !saved) {
+        if (Result<void> saved =
+                savePicture(fs::path(options.outputFolder) / thumbnailFile, size, pixels, true);
+            !saved) {
             return tl::unexpected(saved.error());
         }
     }
     const bool terminates = plan->variant.terminates;
     const FrameTimes summary = summarise(times);
     // Drivers put off much of the compiling until a program is first drawn with.
-    const double compileMs = stage.renderer().compileMs(plan->variant) + std::max(0.0, firstMs - summary.median);
+    const double compileMs =
+        stage.renderer().compileMs(plan->variant) + std::max(0.0, firstMs - summary.median);
     return json{{"label", fmt::format("{}x{}", plan->planes, plan->layersPerPlane)},
                 {"classification", name(plan->variant.classification)},
                 {"termination", terminates ? fmt::format("{:.4f}", plan->terminationAlpha) : "off"},
@@ -140,22 +151,23 @@ json conditions(const Stage& stage, const SweepOptions& o) {
     const Settings& s = o.settings;
     const SceneFacts facts = stage.scene().facts();
     const int total = totalLayers(s, facts);
-    return {{"size", {o.size.x, o.size.y}},
-            {"camera", {o.camera.azimuthDegrees, o.camera.elevationDegrees, o.camera.distanceRadii}},
-            {"fovDegrees", o.fovDegrees},
-            {"transferFunction", stage.scene().look().tf.name},
-            {"classification", name(s.classification)},
-            {"space", name(s.space)},
-            {"target", name(s.target)},
-            {"shade", s.shaded ? "phong" : "off"},
-            {"termination", s.termination ? fmt::format("{:.4f}", *s.termination) : "off"},
-            {"lattice", name(s.lattice)},
-            {"layerSpacingMm", s.totalLayers ? 2.0 * facts.sphere.radiusMm / total
-                                             : s.layerSpacingVoxels * facts.smallestVoxelEdgeMm},
-            {"totalLayers", total},
-            {"tighten", s.tighten},
-            {"framesPerRow", o.frames},
-            {"views", o.stereoIpdMm ? 2 : 1}};
+    return {
+        {"size", {o.size.x, o.size.y}},
+        {"camera", {o.camera.azimuthDegrees, o.camera.elevationDegrees, o.camera.distanceRadii}},
+        {"fovDegrees", o.fovDegrees},
+        {"transferFunction", stage.scene().look().tf.name},
+        {"classification", name(s.classification)},
+        {"space", name(s.space)},
+        {"target", name(s.target)},
+        {"shade", s.shaded ? "phong" : "off"},
+        {"termination", s.termination ? fmt::format("{:.4f}", *s.termination) : "off"},
+        {"lattice", name(s.lattice)},
+        {"layerSpacingMm", s.totalLayers ? 2.0 * facts.sphere.radiusMm / total
+                                         : s.layerSpacingVoxels * facts.smallestVoxelEdgeMm},
+        {"totalLayers", total},
+        {"tighten", s.tighten},
+        {"framesPerRow", o.frames},
+        {"views", o.stereoIpdMm ? 2 : 1}};
 }
 
 /// The part of the report that is the same for all rows; taken last, when memory has seen its peak.
@@ -183,26 +195,31 @@ json header(Stage& stage, const SweepOptions& options, const std::string& comman
 }
 
 std::string csvOf(const json& rows) {
-    static const char* const kColumns[] = {"planes", "layersPerPlane", "form", "skip", "tighten", "classification",
-                                           "termination", "lattice", "variant", "compileMs"};
+    static const char* const kColumns[] = {"planes",  "layersPerPlane", "form",        "skip",
+                                           "tighten", "classification", "termination", "lattice",
+                                           "variant", "compileMs"};
     static const char* const kTimes[] = {"median", "min", "max", "p10", "p90", "n"};
-    static const char* const kCounters[] = {"fragments", "layers_evaluated", "layers_skipped", "volume_fetches",
-                                            "skip_fetches"};
+    static const char* const kCounters[] = {"fragments", "layers_evaluated", "layers_skipped",
+                                            "volume_fetches", "skip_fetches"};
     const auto cell = [](const json& value) {
         return value.is_null() ? "" : value.is_string() ? value.get<std::string>() : value.dump();
     };
     std::string text;
     const auto addLine = [&text](auto&& valueOf) {
         std::string line;
-        for (const char* column : kColumns) line += valueOf(nullptr, column) + ",";
-        for (const char* column : kTimes) line += valueOf("frameMs", column) + ",";
-        for (const char* column : kCounters) line += valueOf("counters", column) + ",";
+        for (const char* column : kColumns)
+            line += valueOf(nullptr, column) + ",";
+        for (const char* column : kTimes)
+            line += valueOf("frameMs", column) + ",";
+        for (const char* column : kCounters)
+            line += valueOf("counters", column) + ",";
         line.back() = '\n';
         text += line;
     };
     addLine([](const char* group, const char* column) {
-        return group != nullptr && std::string_view(group) == "frameMs" ? std::string("frame_ms_") + column
-                                                                        : std::string(column);
+        return group != nullptr && std::string_view(group) == "frameMs"
+                   ? std::string("frame_ms_") + column
+                   : std::string(column);
     });
     for (const json& row : rows) {
         addLine([&](const char* group, const char* column) {
@@ -215,14 +232,17 @@ std::string csvOf(const json& rows) {
 
 /// The page is made by a script from the JSON, so that it can be made again.
 Result<void> writePage(const std::string& folder) {
-    const fs::path installed = fs::read_symlink("/proc/self/exe").parent_path() / "../share/slabcast/perf/report.py";
+    const fs::path installed =
+        fs::read_symlink("/proc/self/exe").parent_path() / "../share/slabcast/perf/report.py";
     const fs::path script = fs::exists(installed) ? installed : fs::path(SLABCAST_REPORT_SCRIPT);
-    const std::string command = fmt::format("/usr/bin/python3 '{}' '{}' 1>&2", script.string(), folder);
+    const std::string command =
+        fmt::format("/usr/bin/python3 '{}' '{}' 1>&2", script.string(), folder);
     if (std::system(command.c_str()) != 0) {
-        return fail(ErrorCode::FileUnwritable,
-                    fmt::format("{0}/sweep.json and sweep.csv are written, report.html is not: install "
-                                "python3-matplotlib, then run {1} {0}",
-                                folder, script.string()));
+        return fail(
+            ErrorCode::FileUnwritable,
+            fmt::format("{0}/sweep.json and sweep.csv are written, report.html is not: install "
+                        "python3-matplotlib, then run {1} {0}",
+                        folder, script.string()));
     }
     return {};
 }
@@ -230,7 +250,8 @@ Result<void> writePage(const std::string& folder) {
 } // namespace
 
 Result<void> sweepCommand(const SweepOptions& options, const std::string& command) {
-    // Compile times are part of the report: a driver that finds its earlier results would report none.
+    // Compile times are part of the report: a driver that finds its earlier results would report
+    // none.
     setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
     Result<Stage> stage = Stage::open(options);
     if (!stage) {
@@ -240,16 +261,18 @@ Result<void> sweepCommand(const SweepOptions& options, const std::string& comman
     const fs::path folder = options.outputFolder;
     fs::create_directories(folder / "thumbnails", error);
     if (error) {
-        return fail(ErrorCode::FileUnwritable, fmt::format("{}: cannot make this folder ({}): give another to --out",
-                                                           options.outputFolder, error.message()));
+        return fail(ErrorCode::FileUnwritable,
+                    fmt::format("{}: cannot make this folder ({}): give another to --out",
+                                options.outputFolder, error.message()));
     }
-    const std::vector<Settings> plans = rowSettings(options, totalLayers(options.settings, stage->scene().facts()));
+    const std::vector<Settings> plans =
+        rowSettings(options, totalLayers(options.settings, stage->scene().facts()));
     json rows = json::array();
     Progress progress;
     for (const Settings& settings : plans) {
         const int index = static_cast<int>(rows.size());
-        progress.show(fmt::format("row {} of {}: {} layers per plane, skip {}, {}", index + 1, plans.size(),
-                                  *settings.layersPerPlane, name(*settings.skip),
+        progress.show(fmt::format("row {} of {}: {} layers per plane, skip {}, {}", index + 1,
+                                  plans.size(), *settings.layersPerPlane, name(*settings.skip),
                                   settings.tighten ? "tight planes" : "10-gons"));
         Result<json> row = measureRow(*stage, options, settings, index);
         if (!row) {
@@ -259,10 +282,12 @@ Result<void> sweepCommand(const SweepOptions& options, const std::string& comman
     }
     json report = header(*stage, options, command);
     report["rows"] = std::move(rows);
-    if (Result<void> done = writeFileAtomically(folder / "sweep.csv", csvOf(report["rows"])); !done) {
+    if (Result<void> done = writeFileAtomically(folder / "sweep.csv", csvOf(report["rows"]));
+        !done) {
         return done;
     }
-    if (Result<void> done = writeFileAtomically(folder / "sweep.json", report.dump(2) + "\n"); !done) {
+    if (Result<void> done = writeFileAtomically(folder / "sweep.json", report.dump(2) + "\n");
+        !done) {
         return done;
     }
     return writePage(options.outputFolder);

@@ -65,7 +65,8 @@ struct EglContext::State {
     EGLSurface surface = EGL_NO_SURFACE;
     std::string description;
 
-    /// The display stays initialised: it belongs to the process, and eglTerminate would end other contexts on it.
+    /// The display stays initialised: it belongs to the process, and eglTerminate would end other
+    /// contexts on it.
     ~State() {
         if (context == EGL_NO_CONTEXT) {
             return;

@@ -14,8 +14,8 @@ struct EglOptions {
     bool preferSurfaceless = true; // Mesa's surfaceless platform before the devices
 };
 
-/// A GLES 3.2 context without a window, from libEGL, which is loaded when it is asked for: nothing links to it.
-/// Tested by: gl_objects_gl_test.cpp
+/// A GLES 3.2 context without a window, from libEGL, which is loaded when it is asked for: nothing
+/// links to it. Tested by: gl_objects_gl_test.cpp
 class EglContext {
 public:
     /// Makes the context and makes it current in this thread.

@@ -8,8 +8,8 @@
 
 namespace slabcast {
 
-/// Whether a file could be written at `path`, as far as can be known beforehand; to be asked before long work.
-/// Fails: FileUnwritable (no such folder, no permission, `path` is a folder or device).
+/// Whether a file could be written at `path`, as far as can be known beforehand; to be asked before
+/// long work. Fails: FileUnwritable (no such folder, no permission, `path` is a folder or device).
 Result<void> checkWritable(const std::filesystem::path& path);
 
 /// Fills the file that it is given, under a temporary name. A failure is handed on.

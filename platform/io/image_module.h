@@ -11,8 +11,8 @@ namespace slabcast {
 
 struct ImageFile; // open for reading, in the module's keeping
 
-/// One page of an image file. `typeName` is the library's word for a type; where it is none of ours,
-/// `isReadable` is false.
+/// One page of an image file. `typeName` is the library's word for a type; where it is none of
+/// ours, `isReadable` is false.
 struct ImagePage {
     int width = 0;
     int height = 0;
@@ -23,10 +23,10 @@ struct ImagePage {
     double spacingMm[2] = {1.0, 1.0}; // 1 where the file is silent
 };
 
-/// What the module slabcast_images can do, which holds all that needs OpenImageIO. That library brings some 240 others
-/// along (OpenVDB, GDAL, FFmpeg, OpenCV): linked, it made `slabcast --help` take 0.3 s and 134 MiB, opened on first use,
-/// 0.03 s and 23 MiB.
-/// Plain types, and nothing thrown. What fails returns null or false, and lastError() of the same thread says why.
+/// What the module slabcast_images can do, which holds all that needs OpenImageIO. That library
+/// brings some 240 others along (OpenVDB, GDAL, FFmpeg, OpenCV): linked, it made `slabcast --help`
+/// take 0.3 s and 134 MiB, opened on first use, 0.03 s and 23 MiB. Plain types, and nothing thrown.
+/// What fails returns null or false, and lastError() of the same thread says why.
 struct ImageModule {
     static constexpr std::uint32_t kVersion = 1; // of this layout
 
@@ -46,10 +46,11 @@ struct ImageModule {
 /// The module's only symbol, of type `const ImageModule*()`.
 inline constexpr const char* kImageModuleEntry = "slabcastImageModule";
 
-/// Opens the module on first use and never closes it: OpenImageIO keeps threads and exit handlers. The dynamic linker
-/// looks for it, as for every library, in LD_LIBRARY_PATH and along the program's run path, which CMake sets
-/// for `slabcast` and for what links Slabcast::io.
-/// Fails: `failure`, naming `path`, for whose sake it is opened. Tested by: io_libraries_test.cpp, consumer_test.sh
+/// Opens the module on first use and never closes it: OpenImageIO keeps threads and exit handlers.
+/// The dynamic linker looks for it, as for every library, in LD_LIBRARY_PATH and along the
+/// program's run path, which CMake sets for `slabcast` and for what links Slabcast::io. Fails:
+/// `failure`, naming `path`, for whose sake it is opened. Tested by: io_libraries_test.cpp,
+/// consumer_test.sh
 Result<const ImageModule*> imageModule(const std::filesystem::path& path, ErrorCode failure);
 
 /// For tests: of any file, looked for anew. The error's detail is the cause alone.

@@ -10,8 +10,8 @@ namespace slabcast {
 
 namespace {
 
-/// The context, its API and its debug output: one for the process, kept to its end (drivers dislike being torn
-/// down in exit handlers).
+/// The context, its API and its debug output: one for the process, kept to its end (drivers dislike
+/// being torn down in exit handlers).
 struct SharedDevice {
     Result<EglContext> context = EglContext::create({.debug = true});
     Result<gl::Caps> caps = fail(ErrorCode::DeviceUnsupported, "no context");

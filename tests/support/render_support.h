@@ -38,7 +38,8 @@ using VoxelFormula = std::function<double(glm::ivec3)>;
 Volume makeVolume(glm::ivec3 dims, VoxelType type, const VoxelFormula& formula,
                   glm::dvec3 spacingMm = glm::dvec3(1.0));
 Volume constantVolume(glm::ivec3 dims, int value);
-/// A few long waves: neighbours differ by a few steps in a hundred, so that a filter's error stays small.
+/// A few long waves: neighbours differ by a few steps in a hundred, so that a filter's error stays
+/// small.
 Volume wavyVolume(Random& random, glm::ivec3 dims, VoxelType type,
                   glm::dvec3 spacingMm = glm::dvec3(1.0));
 
@@ -82,7 +83,8 @@ inline constexpr SegmentCase kSegmentCases[] = {{1, SegmentForm::Unrolled},
                                                 {kAll, SegmentForm::Loop}};
 
 inline constexpr glm::ivec2 kSize(96, 72);
-/// From 2.5 radii away, turned about two axes and seen past the middle: nothing is symmetric. For pictures of kSize.
+/// From 2.5 radii away, turned about two axes and seen past the middle: nothing is symmetric. For
+/// pictures of kSize.
 View asymmetricView(const Scene& scene);
 
 /// One renderer for all tests of the process, so that a shader is compiled once.
@@ -107,11 +109,12 @@ struct PixelReference {
     bool atEdge = false;   // the ray grazes the box: whether it meets it is a matter of rounding
 };
 
-/// Walks one ray front to back over the plan's lattice. Beside the sum it carries a bound: a layer whose premultiplied
-/// colour may be off by p and whose opacity by a moves the pixel by at most T (p + a), T being the largest
-/// transmittance in front of it. p and a are the spread of the classification over what the field, the table and the
-/// length may be: the exact ones, give or take the texture unit's filter (1/256 of the cell's range per axis and one
-/// step of the format), float32 positions (2^-22 of the terms that they are summed from) and the table's own weights.
+/// Walks one ray front to back over the plan's lattice. Beside the sum it carries a bound: a layer
+/// whose premultiplied colour may be off by p and whose opacity by a moves the pixel by at most T
+/// (p + a), T being the largest transmittance in front of it. p and a are the spread of the
+/// classification over what the field, the table and the length may be: the exact ones, give or
+/// take the texture unit's filter (1/256 of the cell's range per axis and one step of the format),
+/// float32 positions (2^-22 of the terms that they are summed from) and the table's own weights.
 class ReferencePicture {
 public:
     ReferencePicture(const Scene& scene, const FramePlan& plan, const View& view,
@@ -136,13 +139,14 @@ private:
     std::vector<double> values_; // of all voxels
 };
 
-/// Every pixel within its bound and the blending's; at most 0.5 % of the pixels may graze the box. The mean
-/// difference may be `meanLimit` and half of the blending's bound: cutting digits off errs by half a step on average.
+/// Every pixel within its bound and the blending's; at most 0.5 % of the pixels may graze the box.
+/// The mean difference may be `meanLimit` and half of the blending's bound: cutting digits off errs
+/// by half a step on average.
 void expectMatchesReference(const Picture& picture, const Scene& scene, const FramePlan& plan,
                             const View& view, double meanLimit);
 
-/// What blending may add: every plane rounds once more. 8 bits round to the nearest step, half of 1/255; fp16's steps
-/// are 2^-11 at most below 1, and GL lets a device take either neighbour.
+/// What blending may add: every plane rounds once more. 8 bits round to the nearest step, half of
+/// 1/255; fp16's steps are 2^-11 at most below 1, and GL lets a device take either neighbour.
 double blendingBound(const FramePlan& plan);
 
 } // namespace slabcast::test
