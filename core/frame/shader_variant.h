@@ -22,18 +22,20 @@ inline constexpr std::array<int, 10> kUnrollLengths = {1, 2, 4, 8, 12, 16, 24, 3
 /// form serves.
 int unrollLengthFor(int layersPerPlane);
 
+// clang-format off
 /// Which segment shader. A field exists only where it changes loop structure, resources or outputs;
 /// all else is a uniform, and what a field switches off is absent from the text.
 ///
-/// | field          | off                            | on |
+/// | field          | off                            | on                                             |
 /// |----------------|--------------------------------|------------------------------------------------|
-/// | classification | Post: field + table            | Pre: one RGBA8 texture, colours baked | |
-/// skip           | None                           | Proximity: one more texture, two tests | |
-/// shaded         | colour as classified           | 6 more fields per visible sample (Post only) |
-/// | exactField     | texture unit's filter          | 8 fetches, float32 (Post only) | |
-/// terminates     | every layer                    | leaves when nearly opaque | | unroll         |
-/// 0: loop                        | layers written out, from kUnrollLengths        | | counts |
-/// draws                          | writes work counters instead of colour         |
+/// | classification | Post: field + table            | Pre: one RGBA8 texture, colours baked          |
+/// | skip           | None                           | Proximity: one more texture, two tests         |
+/// | shaded         | colour as classified           | 6 more fields per visible sample (Post only)   |
+/// | exactField     | texture unit's filter          | 8 fetches, float32 (Post only)                 |
+/// | terminates     | every layer                    | leaves when nearly opaque                      |
+/// | unroll         | 0: loop                        | layers written out, from kUnrollLengths        |
+/// | counts         | draws                          | writes work counters instead of colour         |
+// clang-format on
 struct ShaderVariant {
     Classification classification = Classification::Post;
     SkipStructure skip = SkipStructure::None;
