@@ -59,7 +59,7 @@ GOLDENS = {
          (255, 1, .25, .15, .9)), 4.0,
         (30, 25, 2.6), {"size": "96x96", "shade": "phong", "classify": "preclassified", "planes": 4, "layers": 48,
                         "form": "unrolled"},
-        max_difference=8, mean_difference=0.5, spoilt={"classify": "post"}, handed=False),
+        max_difference=8, mean_difference=0.5, spoilt={"classify": "post", "shade": None}, handed=False),
     "marschner-lobb": Golden(
         "phantom:marschner-lobb:40",
         ((.3, .1, .3, .9, 0), (.5, .2, .8, .4, .1), (.8, 1, .5, .1, .4), (1, 1, .9, .8, .6)), 2.0,
