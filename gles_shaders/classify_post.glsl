@@ -7,11 +7,12 @@ uniform sampler2D transferTable;
 /// Two fetches and a float32 interpolation: texture units may filter with 8-bit weights, and what is zero in both
 /// texels must be exactly zero between them.
 vec4 materialOf(float value) {
-    float at = clamp(value * tableMap.x + tableMap.y, 0.0, tableMap.w);
+    precise float at = clamp((value - tableMap.y) * tableMap.x, 0.0, tableMap.w);
     int texel = int(at);
     vec4 low = texelFetch(transferTable, ivec2(texel, 0), 0);
     vec4 high = texelFetch(transferTable, ivec2(min(texel + 1, int(tableMap.w)), 0), 0);
-    return mix(low, high, at - float(texel));
+    precise vec4 material = low + (high - low) * (at - float(texel));
+    return material;
 }
 
 /// Premultiplied colour and opacity of `lengthMm` of what lies at uvw.

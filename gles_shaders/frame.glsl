@@ -15,7 +15,7 @@ layout(std140) uniform FrameBlock {
     vec4 sphere;         // xyz: the sphere's centre (x, y, depth); w: its distance
     vec4 viewTangent;    // xy: tangent of the viewport's centre; zw: 1 / half extent
     vec4 viewport;       // xy: centre in pixels; z: 1 for shells, 0 for planar; w: termination threshold
-    vec4 tableMap;       // xy: table texel = sampled * x + y; z: 1 / reference length of pre-classified texels; w: last texel
+    vec4 tableMap;       // table texel = (sampled - y) * x; z: 1 / reference length of pre-classified texels; w: last texel
     vec4 skipMap;        // xyz: blocks per unit of uvw; w: free length per count, mm
     vec4 decode;         // xy: sampled value of an exact texel = dot(texel.rg, xy)
     vec4 gradientRow[3]; // rows: patient-space gradient from differences per voxel; w of row 0: gradient floor

@@ -12,7 +12,7 @@ vec4 march(Ray ray, ivec2 range) {
         int stop = stretch.free ? i : min(i + stretch.layers, range.y);
         for (; i < stop && !terminated(sum.a); ++i) {
             countLayer();
-            sum += (1.0 - sum.a) * classify(samplePosition(ray, i), lengthInside(ray, i), ray);
+            sum = composited(sum, classify(samplePosition(ray, i), lengthInside(ray, i), ray));
         }
         if (stretch.free || terminated(sum.a)) {
             break;

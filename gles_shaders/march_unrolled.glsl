@@ -17,7 +17,7 @@ void compositeLayer(Ray ray, int i, int end, inout Walk walk) {
     }
     if (!walk.free) {
         countLayer();
-        walk.sum += (1.0 - walk.sum.a) * classify(uvw, lengthInside(ray, i), ray);
+        walk.sum = composited(walk.sum, classify(uvw, lengthInside(ray, i), ray));
     }
 }
 

@@ -16,41 +16,47 @@ vec2 slabOffsets(float centre, float inverseSlope) {
     if (inverseSlope == kFar) {
         return centre >= 0.0 && centre <= 1.0 ? vec2(-kFar, kFar) : vec2(kFar, -kFar);
     }
-    float a = (0.0 - centre) * inverseSlope;
-    float b = (1.0 - centre) * inverseSlope;
+    precise float a = (0.0 - centre) * inverseSlope;
+    precise float b = (1.0 - centre) * inverseSlope;
     return vec2(min(a, b), max(a, b));
 }
 
 Ray rayOfFragment(vec2 fragCoord) {
     precise vec2 p = fragCoord - viewport.xy;
-    vec2 t = tangent.xy + tangent.zw * p;
-    float lengthPerDepth = sqrt(1.0 + dot(t, t));
-    vec3 direction = direction0.xyz + directionX.xyz * p.x + directionY.xyz * p.y;
+    precise vec2 t = tangent.xy + tangent.zw * p;
+    precise float lengthPerDepth = sqrt(1.0 + dot(t, t));
+    precise vec3 direction = direction0.xyz + directionX.xyz * p.x + directionY.xyz * p.y;
 
     Ray ray;
     precise vec3 centre = centre0.xyz + centreX.xyz * p.x + centreY.xyz * p.y;
-    float nearOffset;
+    precise vec3 step;
+    precise float layerLengthMm;
+    precise float nearOffset;
     if (viewport.z == 0.0) {
-        ray.centre = centre;
-        ray.step = direction * direction0.w;
-        ray.layerLengthMm = direction0.w * lengthPerDepth * directionY.w;
+        step = direction * direction0.w;
+        layerLengthMm = direction0.w * lengthPerDepth * directionY.w;
         nearOffset = centreX.w;
     } else {
-        // From the sphere's depth to its distance. The quotient is the difference sphere.w - depth * length without
-        // its cancellation; behind the eye there is none, and the quotient's divisor may vanish.
-        vec2 miss = sphere.z * t - sphere.xy;
-        float far = dot(miss, sphere.z * t + sphere.xy) / (sphere.w + sphere.z * lengthPerDepth);
-        float toShell = sphere.z > 0.0 ? -far : sphere.w - sphere.z * lengthPerDepth;
-        vec3 perLength = direction / lengthPerDepth;
-        ray.centre = centre + perLength * toShell;
-        ray.step = perLength * direction0.w;
-        ray.layerLengthMm = direction0.w * directionY.w;
+        // From the sphere's depth to its distance. The quotient is the difference
+        // sphere.w - depth * length without its cancellation; behind the eye there is none, and the
+        // quotient's divisor may vanish.
+        precise vec2 miss = sphere.z * t - sphere.xy;
+        precise float far =
+            dot(miss, sphere.z * t + sphere.xy) / (sphere.w + sphere.z * lengthPerDepth);
+        precise float toShell = sphere.z > 0.0 ? -far : sphere.w - sphere.z * lengthPerDepth;
+        precise vec3 perLength = direction / lengthPerDepth;
+        centre += perLength * toShell;
+        step = perLength * direction0.w;
+        layerLengthMm = direction0.w * directionY.w;
         nearOffset = (centreY.w * lengthPerDepth - sphere.w) * directionX.w;
     }
-    ray.inverseStep = mix(1.0 / ray.step, vec3(kFar), lessThan(abs(ray.step), vec3(1.0e-25)));
-    vec2 x = slabOffsets(ray.centre.x, ray.inverseStep.x);
-    vec2 y = slabOffsets(ray.centre.y, ray.inverseStep.y);
-    vec2 z = slabOffsets(ray.centre.z, ray.inverseStep.z);
+    ray.centre = centre;
+    ray.step = step;
+    ray.layerLengthMm = layerLengthMm;
+    ray.inverseStep = mix(1.0 / step, vec3(kFar), lessThan(abs(step), vec3(1.0e-25)));
+    vec2 x = slabOffsets(centre.x, ray.inverseStep.x);
+    vec2 y = slabOffsets(centre.y, ray.inverseStep.y);
+    vec2 z = slabOffsets(centre.z, ray.inverseStep.z);
     ray.entry = max(max(x.x, y.x), max(z.x, nearOffset));
     ray.exit = min(min(x.y, y.y), z.y);
     return ray;
@@ -78,5 +84,7 @@ vec3 samplePosition(Ray ray, int i) {
 /// Length of layer i inside the box, mm.
 float lengthInside(Ray ray, int i) {
     float low = float(i) - centre0.w;
-    return clamp(min(ray.exit, low + 1.0) - max(ray.entry, low), 0.0, 1.0) * ray.layerLengthMm;
+    precise float inside =
+        clamp(min(ray.exit, low + 1.0) - max(ray.entry, low), 0.0, 1.0) * ray.layerLengthMm;
+    return inside;
 }

@@ -267,6 +267,14 @@ class BadDevices(CliTest):
         self.render_fails(*budget, "--downsample", fitting - 1, cause="13824 bytes", remedy="--downsample")
         self.assertEqual(self.stats(*budget, *QUICK, "--downsample", fitting)["volume"]["dims"], [16, 16, 16])
 
+    def test_budget_counts_what_is_uploaded(self):
+        """A cube of 48 has 442368 bytes as colours of four, 110592 as voxels, and 55296 as colours of half the edge."""
+        budget = ("phantom:shells:48", "--gpu-budget", "0.2")  # 209715 bytes
+        self.picture(*budget, *QUICK)
+        pre = (*budget, "--classify", "preclassified")
+        self.render_fails(*pre, cause="442368 bytes.*209715", remedy="--downsample 2$")
+        self.assertEqual(self.stats(*pre, *QUICK, "--downsample", "2")["memory"]["gpu_volume_bytes"], 55296)
+
 
 class BadUsage(CliTest):
     def test_values_that_options_do_not_take(self):
@@ -409,7 +417,7 @@ class Inputs(CliTest):
 class Statistics(CliTest):
     KEYS = {
         "device": {"renderer", "vendor", "version", "software"},
-        "plan": {"planes", "layers", "layersPerPlane", "variant", "reasons"},
+        "plan": {"planes", "layers", "layersPerPlane", "termination", "variant", "reasons"},
         "frame_ms": {"median", "min", "max", "n"},
         "counters": {"fragments", "layers_evaluated", "layers_skipped", "volume_fetches", "skip_fetches"},
         "volume": {"name", "dims", "type", "spacingMm", "bytes"},
@@ -425,6 +433,10 @@ class Statistics(CliTest):
         self.assertEqual(stats["volume"]["bytes"], 24 ** 3)
         times = stats["frame_ms"]
         self.assertTrue(0 < times["min"] <= times["median"] <= times["max"])
+
+    def test_termination_is_an_opacity_or_off(self):
+        for given, named in (("0.25", 0.25), ("off", "off")):
+            self.assertEqual(self.stats(*self.sparse(), "--termination", given)["plan"]["termination"], named)
 
     def test_skipping_saves_work(self):
         sparse = (*self.sparse(), "--termination", "off")
@@ -477,6 +489,13 @@ class Sweep(CliTest):
         page.unlink()
         subprocess.run(["/usr/bin/python3", REPORT, folder], check=True, capture_output=True)
         self.assertTrue(page.is_file())
+
+    def test_folders_of_any_name_get_their_page(self):
+        for name in ("john's scans", "$(touch x);`y`"):
+            self.succeeds("sweep", PHANTOM, "--size", "32x32", "--layers", "4", "--frames", "1", "--out", name,
+                          notes=r"[^\n]*report\.html\n")
+            self.assertTrue((self.folder / name / "report.html").is_file())
+        self.assertFalse((self.folder / "x").exists())
 
     def test_sweeps_that_cannot_be(self):
         self.write("file", "kept")

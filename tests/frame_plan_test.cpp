@@ -19,8 +19,7 @@ SceneFacts boneFacts() {
     return {.sphere = {glm::dvec3(0.0), 222.0},
             .smallestVoxelEdgeMm = 1.0,
             .occupiedFraction = 0.5,
-            .maxExtinctionPerMm = 2.0,
-            .minPositiveExtinctionPerMm = 0.1};
+            .maxExtinctionPerMm = 2.0};
 }
 
 const gl::Caps kHeadset{};
@@ -81,7 +80,6 @@ SceneFacts randomFacts(Dice& dice) {
     facts.anythingVisible = dice.chance(0.8);
     facts.occupiedFraction = dice.uniform(0.0, 1.0);
     facts.maxExtinctionPerMm = dice.logUniform(1e-6, 100.0);
-    facts.minPositiveExtinctionPerMm = facts.maxExtinctionPerMm * dice.logUniform(1e-6, 1.0);
     return facts;
 }
 
@@ -169,6 +167,38 @@ TEST(FramePlan, DiffersWhereAPictureWould) {
         EXPECT_NE(planned(settings), base);
     }
     EXPECT_EQ(planned({}), base);
+}
+
+TEST(FramePlan, IsEqualWhateverWasMeasuredOnTheWay) {
+    const Ratio ratio{28, 16, SegmentForm::Unrolled};
+    const RatioMeasurement fast[] = {{ratio, 3.0}};
+    const RatioMeasurement slow[] = {{ratio, 4.0}};
+    const FramePlan base = *plan(boneFacts(), {}, kHeadset, fast);
+    const FramePlan again = *plan(boneFacts(), {}, kHeadset, slow);
+    EXPECT_NE(base.reasons, again.reasons);
+    EXPECT_EQ(base, again);
+}
+
+TEST(FramePlan, IsUnequalInAnyOtherMember) {
+    const auto changed = [](auto&& change) {
+        FramePlan plan = planned({});
+        change(plan);
+        return plan;
+    };
+    const FramePlan others[] = {
+        changed([](FramePlan& p) { p.lattice.spacingMm *= 2.0; }),
+        changed([](FramePlan& p) { ++p.planes; }),
+        changed([](FramePlan& p) { ++p.layersPerPlane; }),
+        changed([](FramePlan& p) { p.variant.counts = true; }),
+        changed([](FramePlan& p) { p.tighten = !p.tighten; }),
+        changed([](FramePlan& p) { p.target = TargetFormat::Rgba16f; }),
+        changed([](FramePlan& p) { p.space = CompositingSpace::Linear; }),
+        changed([](FramePlan& p) { p.terminationAlpha = 0.5; }),
+        changed([](FramePlan& p) { p.drawsNothing = true; }),
+    };
+    for (const FramePlan& other : others) {
+        EXPECT_NE(other, planned({})) << &other - others;
+    }
 }
 
 TEST(FramePlan, TheRatioNeverMovesTheLattice) {
@@ -296,16 +326,28 @@ TEST(FramePlan, BakedTexelsNeedNeitherGradientsNorFetches) {
     EXPECT_FALSE(planned({}, facts).variant.shaded);
 }
 
-TEST(FramePlan, WarnsWhereEightBitsLoseTheFaintest) {
-    // A plane of 16 mm adds 1 - exp(-16 s): below 1/510 from s = -ln(1 - 1/510)/16 down.
-    const double limit = -std::log(1.0 - 1.0 / 510.0) / 16.0;
+TEST(FramePlan, WarnsWhereEightBitsLeaveLittleOfAnything) {
+    // A plane of 16 mm adds 1 - exp(-16 s) of the densest: 4/510 from s = -ln(1 - 4/510)/16 on.
+    const double limit = -std::log(1.0 - 4.0 / 510.0) / 16.0;
     SceneFacts facts = boneFacts();
-    facts.minPositiveExtinctionPerMm = 0.99 * limit;
+    EXPECT_EQ(reasonFor(planned({}, facts), "warning"), nullptr);
+    facts.maxExtinctionPerMm = 1.01 * limit;
+    EXPECT_EQ(reasonFor(planned({}, facts), "warning"), nullptr);
+    facts.maxExtinctionPerMm = 0.99 * limit;
     EXPECT_NE(reasonFor(planned({}, facts), "warning"), nullptr);
+    facts.maxExtinctionPerMm = 0.5 * limit; // half a step of 1/255 in 2.004 half steps
+    const FramePlan faint = planned({}, facts);
+    const Reason* warning = reasonFor(faint, "warning");
+    ASSERT_NE(warning, nullptr);
+    EXPECT_NE(warning->why.find("up to 49.9 %"), std::string::npos) << warning->why;
     EXPECT_EQ(reasonFor(planned({.target = TargetFormat::Rgba16f}, facts), "warning"), nullptr);
-    EXPECT_EQ(reasonFor(planned({.layersPerPlane = 32}, facts), "warning"),
+    EXPECT_EQ(reasonFor(planned({.layersPerPlane = 64}, facts), "warning"),
               nullptr); // fewer planes keep it
-    facts.minPositiveExtinctionPerMm = 1.01 * limit;
+    facts.maxExtinctionPerMm = 0.24 * limit;
+    const FramePlan lost = planned({}, facts);
+    ASSERT_NE(reasonFor(lost, "warning"), nullptr);
+    EXPECT_NE(reasonFor(lost, "warning")->why.find("all of it"), std::string::npos);
+    facts.anythingVisible = false;
     EXPECT_EQ(reasonFor(planned({}, facts), "warning"), nullptr);
 }
 

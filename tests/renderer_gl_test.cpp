@@ -221,12 +221,13 @@ TEST_F(RendererTest, CompositesOverWhatIsThere) {
 }
 
 TEST_F(RendererTest, TouchesNothingOutsideTheViewport) {
-    const Scene scene =
-        makeScene(constantVolume({16, 16, 16}, 5), {.tf = uniformTransfer(1.0, glm::dvec3(1.0))});
-    const View inside =
-        orbitView(scene, {0.0, 0.0, 0.1}, 60.0, kSize); // all planes cover the whole viewport
     const Viewport viewport{11, 7, 40, 31};
     for (const CompositingSpace space : {CompositingSpace::Display, CompositingSpace::Linear}) {
+        const Scene scene =
+            makeScene(constantVolume({16, 16, 16}, 5),
+                      {.tf = uniformTransfer(1.0, glm::dvec3(1.0)), .space = space});
+        // All planes cover the whole viewport.
+        const View inside = orbitView(scene, {0.0, 0.0, 0.1}, 60.0, kSize);
         Settings settings = segments(4, SegmentForm::Loop);
         settings.space = space;
         const FramePlan plan = decide(scene, settings);

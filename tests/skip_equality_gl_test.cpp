@@ -109,6 +109,11 @@ Settings randomSettings(Random& random) {
     return settings;
 }
 
+bool showsSomething(const Picture& picture) {
+    return std::any_of(picture.pixels.begin(), picture.pixels.end(),
+                       [](glm::vec4 p) { return p.a > 0.0F; });
+}
+
 class SkipEqualityTest : public RenderTest {
 protected:
     /// Draws one random scene in all four ways; returns whether anything was to be seen.
@@ -146,8 +151,7 @@ protected:
                     << ", off by " << largestDifference(plain, picture);
             }
         }
-        return std::any_of(plain.pixels.begin(), plain.pixels.end(),
-                           [](glm::vec4 p) { return p.a > 0.0F; });
+        return showsSomething(plain);
     }
 
     void drawScenes(std::uint64_t firstSeed, int count, bool exact, Classification classification,

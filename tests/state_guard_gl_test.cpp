@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "core/gl/color_targets.h"
 #include "core/gl/objects.h"
 #include "core/gl/program.h"
-#include "tests/support/gl_fixture.h"
+#include "core/volume/volume_texture.h"
+#include "tests/support/render_support.h"
 
 namespace slabcast {
 
@@ -55,6 +57,9 @@ constexpr Tracked kTracked[] = {
     {"depth test", GL_DEPTH_TEST, 1},
     {"dither", GL_DITHER, 1},
     {"rasterizer discard", GL_RASTERIZER_DISCARD, 1},
+    {"sample alpha to coverage", GL_SAMPLE_ALPHA_TO_COVERAGE, 1},
+    {"sample coverage", GL_SAMPLE_COVERAGE, 1},
+    {"sample mask", GL_SAMPLE_MASK, 1},
     {"scissor test", GL_SCISSOR_TEST, 1},
     {"stencil test", GL_STENCIL_TEST, 1},
     {"array buffer", GL_ARRAY_BUFFER_BINDING, 1},
@@ -73,6 +78,12 @@ constexpr Tracked kTracked[] = {
     {"pack skip rows", GL_PACK_SKIP_ROWS, 1},
     {"active texture", GL_ACTIVE_TEXTURE, 1},
 };
+
+GLint integer(GLenum query) {
+    GLint value = 0;
+    gl::GetIntegerv(query, &value);
+    return value;
+}
 
 Snapshot snapshot() {
     Snapshot state;
@@ -160,8 +171,10 @@ struct Owner {
                               GL_SRC_ALPHA + k);
         gl::BlendEquationSeparate(k == 1 ? GL_FUNC_SUBTRACT : GL_MAX,
                                   k == 1 ? GL_MIN : GL_FUNC_ADD);
-        for (const GLenum name : {GL_BLEND, GL_CULL_FACE, GL_DEPTH_TEST, GL_DITHER,
-                                  GL_RASTERIZER_DISCARD, GL_SCISSOR_TEST, GL_STENCIL_TEST}) {
+        for (const GLenum name :
+             {GL_BLEND, GL_CULL_FACE, GL_DEPTH_TEST, GL_DITHER, GL_RASTERIZER_DISCARD,
+              GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE, GL_SAMPLE_MASK, GL_SCISSOR_TEST,
+              GL_STENCIL_TEST}) {
             (on ? gl::Enable : gl::Disable)(name);
         }
         for (const GLenum name : {GL_UNPACK_ALIGNMENT, GL_PACK_ALIGNMENT}) {
@@ -216,6 +229,102 @@ TEST_F(StateGuardGl, PlainPixelTransferIsPlain) {
     }
     EXPECT_EQ(state.at("unpack alignment"), std::vector<double>{1.0});
     EXPECT_EQ(state.at("pack alignment"), std::vector<double>{1.0});
+}
+
+TEST_F(StateGuardGl, UnitsBeyondTheRestoredKeepTheirTextures) {
+    const gl::StateGuard forOtherTests;
+    const Owner host(1);
+    gl::ActiveTexture(GL_TEXTURE9);
+    gl::BindTexture(GL_TEXTURE_2D, host.plane.id());
+    gl::BindTexture(GL_TEXTURE_3D, host.volume.id());
+    {
+        const gl::StateGuard guard;
+        gl::ColorTargets layer;
+        EXPECT_TRUE(layer.resize(4, 4, {GL_RGBA8}).has_value());
+    }
+    EXPECT_TRUE(uploadTable({glm::vec4(1.0F)}, caps()).has_value());
+    const std::uint8_t byte = 1;
+    EXPECT_TRUE(uploadBytes3d({&byte, 1}, {1, 1, 1}, caps()).has_value());
+    EXPECT_EQ(integer(GL_ACTIVE_TEXTURE), GL_TEXTURE9);
+    EXPECT_EQ(integer(GL_TEXTURE_BINDING_2D), static_cast<GLint>(host.plane.id()));
+    EXPECT_EQ(integer(GL_TEXTURE_BINDING_3D), static_cast<GLint>(host.volume.id()));
+    gl::BindTexture(GL_TEXTURE_2D, 0);
+    gl::BindTexture(GL_TEXTURE_3D, 0);
+}
+
+TEST_F(StateGuardGl, MakingABufferBindsNone) {
+    const Owner host(1);
+    gl::BindBuffer(GL_COPY_WRITE_BUFFER, host.buffer.id());
+    const gl::Buffer made = gl::Buffer::make("made");
+    EXPECT_EQ(integer(GL_COPY_WRITE_BUFFER_BINDING), static_cast<GLint>(host.buffer.id()));
+    gl::BindBuffer(GL_COPY_WRITE_BUFFER, 0);
+}
+
+/// A target of four samples per pixel, as a host may give.
+class MultisampleTarget {
+public:
+    explicit MultisampleTarget(glm::ivec2 size) : size_(size) {
+        gl::GenRenderbuffers(1, &color_);
+        gl::BindRenderbuffer(GL_RENDERBUFFER, color_);
+        gl::RenderbufferStorageMultisample(GL_RENDERBUFFER, 4, GL_RGBA8, size.x, size.y);
+        gl::BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+        gl::FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_);
+        const GLfloat clear[4] = {};
+        gl::ClearBufferfv(GL_COLOR, 0, clear);
+    }
+    ~MultisampleTarget() { gl::DeleteRenderbuffers(1, &color_); }
+    MultisampleTarget(const MultisampleTarget&) = delete;
+    MultisampleTarget& operator=(const MultisampleTarget&) = delete;
+
+    GLuint framebuffer() const { return framebuffer_.id(); }
+
+    test::Picture resolved() const {
+        gl::ColorTargets single;
+        EXPECT_TRUE(single.resize(size_.x, size_.y, {GL_RGBA8}).has_value());
+        gl::BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
+        gl::BlitFramebuffer(0, 0, size_.x, size_.y, 0, 0, size_.x, size_.y, GL_COLOR_BUFFER_BIT,
+                            GL_NEAREST);
+        return {size_, single.read()};
+    }
+
+private:
+    glm::ivec2 size_;
+    GLuint color_ = 0;
+    gl::Framebuffer framebuffer_ = gl::Framebuffer::make("multisampled");
+};
+
+class HostSwitchesGl : public test::RenderTest {};
+
+TEST_F(HostSwitchesGl, ChangeNothingOfWhatIsDrawn) {
+    const gl::StateGuard forOtherTests;
+    const Scene scene = makeScene(test::constantVolume({16, 16, 16}, 5),
+                                  {.tf = test::uniformTransfer(0.05, glm::dvec3(1.0))});
+    Settings settings = test::segments(4, SegmentForm::Loop);
+    settings.target = TargetFormat::Rgba8;
+    const FramePlan plan = decide(scene, settings);
+    ASSERT_TRUE(renderer().prepare(scene, plan).has_value());
+    const auto drawnUnder = [&](GLenum hostSwitch) {
+        const MultisampleTarget target(test::kSize);
+        const ViewTarget where{test::asymmetricView(scene),
+                               target.framebuffer(),
+                               {0, 0, test::kSize.x, test::kSize.y}};
+        gl::Enable(hostSwitch);
+        EXPECT_TRUE(renderer().draw(scene, plan, {&where, 1}).has_value());
+        EXPECT_TRUE(gl::IsEnabled(hostSwitch)) << hostSwitch;
+        gl::Disable(hostSwitch);
+        return target.resolved();
+    };
+    gl::SampleCoverage(0.25F, GL_FALSE);
+    gl::SampleMaski(0, 1);
+    const test::Picture plain = drawnUnder(GL_BLEND); // which is set anyway
+    EXPECT_GT(plain.at(test::kSize / 2).a, 0.2);
+    for (const GLenum hostSwitch : {GL_CULL_FACE, GL_DEPTH_TEST, GL_DITHER, GL_RASTERIZER_DISCARD,
+                                    GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE, GL_SAMPLE_MASK,
+                                    GL_SCISSOR_TEST, GL_STENCIL_TEST}) {
+        EXPECT_EQ(test::differingPixels(drawnUnder(hostSwitch), plain), 0) << hostSwitch;
+    }
+    gl::SampleCoverage(1.0F, GL_FALSE);
+    gl::SampleMaski(0, ~0U);
 }
 
 } // namespace slabcast

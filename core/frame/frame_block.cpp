@@ -1,10 +1,16 @@
 #include "core/frame/frame_block.h"
 
+#include <algorithm>
+
 #include "core/frame/scene.h"
+#include "core/transfer/table_axis.h"
 
 namespace slabcast {
 
 namespace {
+
+/// smoothstep() needs two different edges, also for data without any gradient.
+constexpr double kLeastGradient = 1e-30;
 
 glm::vec4 packed(glm::dvec3 xyz, double w) {
     return glm::vec4(glm::dvec4(xyz, w));
@@ -14,17 +20,6 @@ glm::vec4 packed(glm::dvec3 xyz, double w) {
 glm::vec4 decodeWeights(TexelFormat format) {
     return format == TexelFormat::Rg8Exact ? glm::vec4(255.0F * 256.0F, 255.0F, 0.0F, 0.0F)
                                            : glm::vec4(1.0F, 0.0F, 0.0F, 0.0F);
-}
-
-/// Table texel = sampled * x + y.
-glm::dvec2 tableMap(const Texels& texels, const TransferTable& table) {
-    const double span = table.lastValue - table.firstValue;
-    if (span <= 0.0) {
-        return {0.0, 0.0};
-    }
-    const double texelsPerValue = (static_cast<double>(table.texels.size()) - 1.0) / span;
-    return {texels.valueScale * texelsPerValue,
-            (texels.valueBias - table.firstValue) * texelsPerValue};
 }
 
 void fillSkip(FrameBlock& block, const ProximityCloud& cloud, glm::ivec3 dims) {
@@ -41,7 +36,8 @@ void fillShading(FrameBlock& block, const ShadingParameters& shading,
     const glm::dmat3 patientRows = glm::transpose(glm::dmat3(geometry.modelFromUvw()));
     for (int row = 0; row < 3; ++row) {
         const glm::dvec3 covector = uvwFromModel[row] * glm::dvec3(geometry.dims) * valueScale;
-        block.gradientRow[row] = packed(covector, row == 0 ? shading.gradientFloorPerMm : 0.0);
+        block.gradientRow[row] =
+            packed(covector, row == 0 ? std::max(shading.gradientFloorPerMm, kLeastGradient) : 0.0);
         block.patientRow[row] = packed(patientRows[row], 0.0);
     }
     block.material = glm::vec4(
@@ -66,11 +62,11 @@ FrameBlock makeFrameBlock(const RayFrame& f, const Frustum& frustum, const Scene
                                              2.0 / (frustum.top - frustum.bottom)));
     block.viewport =
         glm::vec4(glm::dvec4(f.viewportCentre, shells ? 1.0 : 0.0, plan.terminationAlpha));
-    const glm::dvec2 map = tableMap(scene.texels(), scene.table());
+    const TableAxis axis = tableAxis(scene.texels(), scene.table());
     const ClassifiedTexels* classified = scene.classified();
-    block.tableMap =
-        packed(glm::dvec3(map, classified != nullptr ? 1.0 / classified->referenceLengthMm : 0.0),
-               static_cast<double>(scene.table().texels.size()) - 1.0);
+    block.tableMap = packed({axis.texelsPerSampled, axis.firstSampled,
+                             classified != nullptr ? 1.0 / classified->referenceLengthMm : 0.0},
+                            axis.lastTexel);
     block.decode = decodeWeights(scene.texels().format);
     if (scene.cloud() != nullptr) {
         fillSkip(block, *scene.cloud(), scene.geometry().dims);

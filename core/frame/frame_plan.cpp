@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 
 namespace slabcast {
 
@@ -15,6 +16,8 @@ constexpr int kUnmeasuredLayersPerPlane = 16;
 /// it saves.
 constexpr double kWorthSkipping = 0.95;
 constexpr double kHalfStep8Bit = 0.5 / 255.0;
+/// A plane that adds less is off by more than a quarter of it.
+constexpr double kFaint8Bit = 4.0 * kHalfStep8Bit;
 
 std::string number(double value) {
     char text[32];
@@ -186,19 +189,39 @@ struct Planner {
                         ? "blended in 8 bits, the cheapest on a mobile GPU"
                         : "keeps what 8 bits would round away at every plane");
         }
-        const double least = 1.0 - std::exp(-facts.minPositiveExtinctionPerMm *
-                                            plan.lattice.spacingMm * plan.layersPerPlane);
-        if (plan.target == TargetFormat::Rgba8 && least < kHalfStep8Bit) {
-            because(
-                "warning",
-                "the faintest material adds " + number(least) +
-                    " per plane, below rgba8's rounding (1/510): --target rgba16f or fewer planes "
-                    "keep it");
+        warnOfRounding();
+    }
+
+    /// Some material of a ramp from zero is always lost; it matters where even the densest is
+    /// faint.
+    void warnOfRounding() {
+        const double most = 1.0 - std::exp(-facts.maxExtinctionPerMm * plan.lattice.spacingMm *
+                                           plan.layersPerPlane);
+        if (plan.target != TargetFormat::Rgba8 || !facts.anythingVisible || most >= kFaint8Bit) {
+            return;
         }
+        const std::string lost = most < kHalfStep8Bit
+                                     ? "rounds all of it away (below 1/510)"
+                                     : "is off by up to " + number(100.0 * kHalfStep8Bit / most) +
+                                           " % of it and loses all that is below 1/510";
+        because("warning", "even the densest material adds only " + number(most) +
+                               " per plane: rgba8 " + lost +
+                               "; --target rgba16f or fewer planes keep it");
     }
 };
 
+/// Everything but the reasons. A new member does not compile until it is named here.
+auto decided(const FramePlan& plan) {
+    const auto& [lattice, planes, layers, variant, tight, format, space, alpha, nothing, reasons] =
+        plan;
+    return std::tie(lattice, planes, layers, variant, tight, format, space, alpha, nothing);
+}
+
 } // namespace
+
+bool FramePlan::operator==(const FramePlan& other) const {
+    return decided(*this) == decided(other);
+}
 
 const char* name(TargetFormat format) {
     return format == TargetFormat::Rgba8 ? "rgba8" : "rgba16f";
@@ -217,8 +240,8 @@ int totalLayers(const Settings& settings, const SceneFacts& facts) {
 std::vector<Ratio> ratioCandidates(const Settings& settings, const SceneFacts& facts) {
     const int total = totalLayers(settings, facts);
     std::vector<Ratio> candidates;
-    for (const int layers : {1, 8, 16, 32, 64, total}) {
-        for (const SegmentForm form : {SegmentForm::Unrolled, SegmentForm::Loop}) {
+    for (const int layers : {total, 64, 32, 16, 8, 1}) {
+        for (const SegmentForm form : {SegmentForm::Loop, SegmentForm::Unrolled}) {
             const bool allowed = settings.form == SegmentForm::Auto || settings.form == form;
             const bool exists = form == SegmentForm::Loop || unrollLengthFor(layers) != 0;
             const Ratio ratio{planesFor(total, std::min(layers, total)), std::min(layers, total),

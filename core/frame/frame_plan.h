@@ -46,7 +46,6 @@ struct SceneFacts {
         true; // a skip structure was built: planes can be tightened, space skipped
     double occupiedFraction = 1.0; // of the skip structure's blocks
     double maxExtinctionPerMm = 0.0;
-    double minPositiveExtinctionPerMm = 0.0;
 };
 
 /// One way to deal the layers out to planes.
@@ -74,7 +73,7 @@ struct Reason {
 };
 
 /// Everything that a frame does, decided. Two pictures are of the same settings when their plans
-/// are equal.
+/// are equal: in everything but the reasons, which hold what was measured.
 struct FramePlan {
     Lattice lattice;
     int planes = 1;
@@ -87,14 +86,14 @@ struct FramePlan {
     bool drawsNothing = false;
     std::vector<Reason> reasons;
 
-    bool operator==(const FramePlan&) const = default;
+    bool operator==(const FramePlan& other) const;
 };
 
 /// Total layers that the settings ask for: the given number or enough for the sphere at the
 /// spacing.
 int totalLayers(const Settings& settings, const SceneFacts& facts);
 
-/// Ratios worth measuring for `auto`, from slicing to ray casting.
+/// Ratios worth measuring for `auto`, from ray casting to slicing.
 std::vector<Ratio> ratioCandidates(const Settings& settings, const SceneFacts& facts);
 
 /// Pure: no GL, no clock. Leaves out what the scene does not need and says why.

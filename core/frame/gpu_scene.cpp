@@ -19,56 +19,66 @@ Result<void> keep(gl::Texture& slot, Result<gl::Texture> made) {
 
 } // namespace
 
-Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const gl::Caps& caps) {
+GpuScene::Sources GpuScene::needs(const Scene& scene, const FramePlan& plan) {
     const int look = scene.lookGeneration();
     const bool pre = plan.variant.classification == Classification::Pre;
-    if (Result<void> done = updateVolume(scene, pre, caps); !done) {
-        return done;
-    }
-    if (!pre && tableLook_ != look) {
-        if (Result<void> done = keep(table_, uploadTable(scene.table().texels, caps)); !done) {
+    return {pre ? look : scene.texelsGeneration(), pre ? 0 : look,
+            plan.variant.skip == SkipStructure::None ? 0 : look};
+}
+
+bool GpuScene::serve(const Scene& scene, const FramePlan& plan) const {
+    return held_ == needs(scene, plan);
+}
+
+Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const gl::Caps& caps) {
+    const Sources needed = needs(scene, plan);
+    if (held_.volume != needed.volume) {
+        held_.volume = 0;
+        volume_.release(); // before the next is allocated: two volumes may not fit
+        const bool pre = plan.variant.classification == Classification::Pre;
+        if (Result<void> done = updateVolume(scene, pre, caps); !done) {
             return done;
         }
-        tableBytes_ = static_cast<std::int64_t>(scene.table().texels.size()) * 8;
-        tableLook_ = look;
+        held_.volume = needed.volume;
     }
-    if (plan.variant.skip == SkipStructure::None) {
+    if (held_.table != needed.table) {
+        held_.table = 0;
+        table_.release();
+        const std::vector<glm::vec4>& texels = scene.table().texels;
+        if (needed.table != 0) {
+            if (Result<void> done = keep(table_, uploadTable(texels, caps)); !done) {
+                return done;
+            }
+        }
+        tableBytes_ = needed.table == 0 ? 0 : static_cast<std::int64_t>(texels.size()) * 8;
+        held_.table = needed.table;
+    }
+    if (held_.skip != needed.skip) {
+        held_.skip = 0;
         skip_.release();
         skipBytes_ = 0;
-        skipLook_ = -1;
-    } else if (skipLook_ != look) {
-        SLABCAST_EXPECTS(scene.cloud() != nullptr, 0);
-        const ProximityCloud& cloud = *scene.cloud();
-        if (Result<void> done = keep(skip_, uploadBytes3d(cloud.freeLengths, cloud.blocks, caps));
-            !done) {
-            return done;
+        if (needed.skip != 0) {
+            SLABCAST_EXPECTS(scene.cloud() != nullptr, needed.skip);
+            const ProximityCloud& cloud = *scene.cloud();
+            if (Result<void> done =
+                    keep(skip_, uploadBytes3d(cloud.freeLengths, cloud.blocks, caps));
+                !done) {
+                return done;
+            }
+            skipBytes_ = static_cast<std::int64_t>(cloud.freeLengths.size());
         }
-        skipBytes_ = static_cast<std::int64_t>(cloud.freeLengths.size());
-        skipLook_ = look;
+        held_.skip = needed.skip;
     }
     return {};
 }
 
 Result<void> GpuScene::updateVolume(const Scene& scene, bool pre, const gl::Caps& caps) {
-    const bool current =
-        pre ? classifiedLook_ == scene.lookGeneration() : scalars_ == scene.texelsGeneration();
-    if (current) {
-        return {};
-    }
-    volume_.release(); // before the next is allocated: two volumes may not fit
-    scalars_ = classifiedLook_ = -1;
     SLABCAST_EXPECTS(!pre || scene.classified() != nullptr, pre);
-    Result<void> done = pre ? keep(volume_, uploadClassified(scene.classified()->texels.data(),
-                                                             scene.classified()->dims, caps))
-                            : keep(volume_, uploadTexels(scene.texels(), caps));
-    if (!done) {
-        return done;
-    }
     const std::size_t perTexel = pre ? 4 : bytesPerTexel(scene.texels().format);
     volumeBytes_ = scene.geometry().voxelCount() * static_cast<std::int64_t>(perTexel);
-    classifiedLook_ = pre ? scene.lookGeneration() : -1;
-    scalars_ = pre ? -1 : scene.texelsGeneration();
-    return {};
+    return pre ? keep(volume_, uploadClassified(scene.classified()->texels.data(),
+                                                scene.classified()->dims, caps))
+               : keep(volume_, uploadTexels(scene.texels(), caps));
 }
 
 void GpuScene::bind() const {

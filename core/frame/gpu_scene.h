@@ -14,6 +14,9 @@ public:
     /// Fails: DeviceOutOfMemory, VolumeTooLarge.
     Result<void> update(const Scene& scene, const FramePlan& plan, const gl::Caps& caps);
 
+    /// Whether the textures are those of this scene, its look and this plan.
+    bool serve(const Scene& scene, const FramePlan& plan) const;
+
     /// Texture units: 0 the volume (scalars or pre-classified), 1 the table, 2 the skip structure.
     void bind() const;
 
@@ -24,13 +27,19 @@ public:
     void forget();
 
 private:
+    /// Generations of what the textures were made from, or are needed from; 0: nothing.
+    /// volume: the scene's texels or, as colours, its look.
+    struct Sources {
+        int volume = 0;
+        int table = 0;
+        int skip = 0;
+        bool operator==(const Sources&) const = default;
+    };
+    static Sources needs(const Scene& scene, const FramePlan& plan);
+
     Result<void> updateVolume(const Scene& scene, bool pre, const gl::Caps& caps);
 
-    // What the textures were made from; -1: nothing. volume_ holds scalars or colours.
-    int scalars_ = -1;
-    int classifiedLook_ = -1;
-    int tableLook_ = -1;
-    int skipLook_ = -1;
+    Sources held_;
     gl::Texture volume_, table_, skip_;
     std::int64_t volumeBytes_ = 0;
     std::int64_t skipBytes_ = 0;

@@ -15,7 +15,9 @@ namespace {
 /// to 1/256 pixel.
 constexpr double kGrow = 1.0 + 1e-4;
 constexpr double kGrowPixels = 1.0 / 128.0;
-constexpr double kMacroBlockVoxels = 8.0;
+constexpr int kMacroBlockVoxels = 8;
+/// A view transforms the corners of every box: this many take well under a millisecond.
+constexpr std::int64_t kMaxBoxes = 16384;
 
 struct Circle {
     glm::dvec2 centre{0.0};
@@ -125,6 +127,12 @@ Outline sphereOutline(const RayFrame& frame, const Frustum& frustum, const Slab&
         return viewportOutline(frustum);
     }
     const Outline whole = viewportOutline(frustum);
+    const glm::dvec2 halfView =
+        glm::dvec2(frustum.right - frustum.left, frustum.top - frustum.bottom) / 2.0;
+    const glm::dvec2 farthestCorner = glm::abs(circle->centre - whole.centre) + halfView;
+    if (glm::length(farthestCorner) <= circle->radius) {
+        return whole; // the same pixels without the seams that clipping a huge polygon may leave
+    }
     const bool clearOfView =
         std::abs(circle->centre.x - whole.centre.x) > circle->radius * kGrow + whole.halfSize.x ||
         std::abs(circle->centre.y - whole.centre.y) > circle->radius * kGrow + whole.halfSize.y;
@@ -215,7 +223,14 @@ ProxyStack sphereStack(const RayFrame& frame, const Frustum& frustum, int planes
 
 std::vector<VisibleBox> visibleBoxes(const ProximityCloud& cloud, const VolumeGeometry& geometry,
                                      double layerLengthMm) {
-    const int merge = std::max(1, static_cast<int>(kMacroBlockVoxels) / cloud.blockEdgeVoxels);
+    int merge = std::max(1, kMacroBlockVoxels / cloud.blockEdgeVoxels);
+    const auto boxCount = [&](int blocksPerBox) {
+        const glm::i64vec3 n((cloud.blocks + (blocksPerBox - 1)) / blocksPerBox);
+        return n.x * n.y * n.z;
+    };
+    while (boxCount(merge) > kMaxBoxes) {
+        merge *= 2;
+    }
     const glm::ivec3 macro = (cloud.blocks + (merge - 1)) / merge;
     std::vector<std::uint8_t> occupied(static_cast<std::size_t>(macro.x) * macro.y * macro.z, 0);
     std::size_t block = 0;

@@ -39,15 +39,16 @@ struct VisibleBox {
     glm::dvec3 high{1.0};
 };
 
-/// The occupied blocks of a cloud, merged to boxes of about eight voxels so that a view costs a few
-/// 10^4 corners. Boxes on the volume's faces reach half a layer further: there a layer's sample may
-/// lie outside, clamped. Depends on the TF and the layer length, not on the view. Cost: O(blocks).
-/// Tested by: proxy_stack_test.cpp
+/// The occupied blocks of a cloud, merged to boxes of eight voxels or more so that there are 16,384
+/// places for one at most. Boxes on the volume's faces reach half a layer further: there a layer's
+/// sample may lie outside, clamped. Depends on the TF and the layer length, not on the view. Cost:
+/// O(blocks). Tested by: proxy_stack_test.cpp
 std::vector<VisibleBox> visibleBoxes(const ProximityCloud& cloud, const VolumeGeometry& geometry,
                                      double layerLengthMm);
 
 /// Rectangles around what the boxes show in each slab; slabs that no box meets are empty.
-/// Draws the same samples as sphereStack wherever they are visible. Cost: O(boxes + planes).
+/// Draws the same samples as sphereStack wherever they are visible. Cost: O(boxes x planes per box
+/// + planes).
 ProxyStack tightStack(const RayFrame& frame, const Frustum& frustum, const glm::dmat4& viewFromUvw,
                       std::span<const VisibleBox> boxes, int planes, int layersPerPlane);
 

@@ -19,6 +19,12 @@ GLenum glFormat(TargetFormat format) {
     return format == TargetFormat::Rgba8 ? GL_RGBA8 : GL_RGBA16F;
 }
 
+/// A plan is for one look: its variant says how the texels are classified, lit and blended.
+bool fits(const FramePlan& plan, const Look& look) {
+    return plan.variant.classification == look.classification && plan.space == look.space &&
+           (look.shading.has_value() || !plan.variant.shaded);
+}
+
 /// The framebuffer may be blended into directly where it holds what is composited.
 bool needsLayer(CompositingSpace space, TargetEncoding encoding) {
     return !(space == CompositingSpace::Display && encoding == TargetEncoding::Encoded) &&
@@ -33,8 +39,9 @@ LayerConversion conversionTo(CompositingSpace space, TargetEncoding encoding) {
 }
 
 void setBlending(GLenum source, GLenum destination) {
-    for (const GLenum off :
-         {GL_DEPTH_TEST, GL_STENCIL_TEST, GL_CULL_FACE, GL_SCISSOR_TEST, GL_DITHER}) {
+    for (const GLenum off : {GL_CULL_FACE, GL_DEPTH_TEST, GL_DITHER, GL_RASTERIZER_DISCARD,
+                             GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE, GL_SAMPLE_MASK,
+                             GL_SCISSOR_TEST, GL_STENCIL_TEST}) {
         gl::Disable(off);
     }
     gl::DepthMask(GL_FALSE);
@@ -144,6 +151,11 @@ Result<void> Renderer::prepare(const Scene& scene, const FramePlan& plan) {
     if (plan.drawsNothing) {
         return {};
     }
+    if (!fits(plan, scene.look())) {
+        return fail(ErrorCode::InvalidArgument,
+                    "plan and look differ in classification, shading or space: set a look for the "
+                    "settings that the plan was made from");
+    }
     const gl::StateGuard guard;
     if (Result<void> done = state_->createFixed(); !done) {
         return done;
@@ -163,8 +175,12 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
     const gl::StateGuard guard;
     const auto program = state_->programs.find(plan.variant);
     SLABCAST_EXPECTS(program != state_->programs.end(), plan.variant.unroll);
+    SLABCAST_EXPECTS(state_->textures.serve(scene, plan), scene.lookGeneration());
     for (const ViewTarget& target : views) {
         const Viewport& v = target.viewport;
+        if (v.width <= 0 || v.height <= 0) {
+            continue; // a window made small
+        }
         setBlending(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
         if (!needsLayer(plan.space, target.encoding)) {
             gl::BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
@@ -172,15 +188,20 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
             state_->drawStack(scene, plan, target.view, v, program->second);
             continue;
         }
-        if (Result<void> done = state_->layer.resize(v.width, v.height, {glFormat(plan.target)});
+        // Only ever grows: views of different sizes share it without a new one in every frame.
+        gl::ColorTargets& layer = state_->layer;
+        if (Result<void> done =
+                layer.resize(std::max(v.width, layer.width()), std::max(v.height, layer.height()),
+                             {glFormat(plan.target)});
             !done) {
             return done;
         }
-        state_->layer.begin();
+        layer.begin();
+        gl::Viewport(0, 0, v.width, v.height);
         state_->drawStack(scene, plan, target.view, {0, 0, v.width, v.height}, program->second);
         gl::BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
         gl::Viewport(v.x, v.y, v.width, v.height);
-        state_->compositor.composite(state_->layer.texture(0), v.x, v.y,
+        state_->compositor.composite(layer.texture(0), v.x, v.y,
                                      conversionTo(plan.space, target.encoding));
     }
     return {};

@@ -54,14 +54,17 @@ public:
     ~Renderer();
 
     /// Brings textures and shaders up to date with scene and plan. Nothing is done for what is
-    /// there already; what the plan does not use is released. Restores the GL state
-    /// (gl::StateGuard). Fails: DeviceOutOfMemory, VolumeTooLarge, ShaderCompile.
+    /// there already; textures that the plan does not use are released, compiled shaders are kept.
+    /// Restores the GL state (gl::StateGuard).
+    /// Fails: InvalidArgument (the plan is not for the scene's look), DeviceOutOfMemory,
+    /// VolumeTooLarge, ShaderCompile.
     Result<void> prepare(const Scene& scene, const FramePlan& plan);
 
     /// Blends the volume over what each target holds, as premultiplied colour. One instanced draw
     /// per view; a layer of our own in between only where the target's encoding is not the
-    /// compositing space. Restores the GL state that gl::StateGuard documents. Contract: prepare()
-    /// has seen this scene and plan. Fails: DeviceOutOfMemory (a layer of our own).
+    /// compositing space. Restores the GL state that gl::StateGuard documents. Contract: the last
+    /// prepare() was for this scene, its look and this plan, or one that uses the same textures.
+    /// Fails: DeviceOutOfMemory (a layer of our own).
     Result<void> draw(const Scene& scene, const FramePlan& plan, std::span<const ViewTarget> views);
 
     /// Draws the same frame once more, counting instead of colouring, and waits for the sums.

@@ -86,18 +86,11 @@ SceneFacts Scene::facts() const {
         facts.occupiedFraction =
             static_cast<double>(cloud_->occupiedBlocks) / (blocks.x * blocks.y * blocks.z);
     }
-    bool any = false;
-    facts.minPositiveExtinctionPerMm = std::numeric_limits<double>::max();
     for (const glm::vec4& texel : table_.texels) {
-        const double extinction = static_cast<double>(texel.a);
-        facts.maxExtinctionPerMm = std::max(facts.maxExtinctionPerMm, extinction);
-        if (extinction > 0.0) {
-            any = true;
-            facts.minPositiveExtinctionPerMm =
-                std::min(facts.minPositiveExtinctionPerMm, extinction);
-        }
+        facts.maxExtinctionPerMm = std::max(facts.maxExtinctionPerMm, static_cast<double>(texel.a));
     }
-    facts.anythingVisible = any && (!cloud_ || cloud_->occupiedBlocks > 0);
+    facts.anythingVisible =
+        facts.maxExtinctionPerMm > 0.0 && (!cloud_ || cloud_->occupiedBlocks > 0);
     return facts;
 }
 

@@ -41,9 +41,10 @@ void label(GLenum identifier, GLuint id, std::string_view text) {
 }
 
 Buffer Buffer::make(std::string_view text) {
+    const GLuint before = bound(GL_COPY_WRITE_BUFFER_BINDING);
     const GLuint id = generate(GenBuffers);
     BindBuffer(GL_COPY_WRITE_BUFFER, id);
-    BindBuffer(GL_COPY_WRITE_BUFFER, 0);
+    BindBuffer(GL_COPY_WRITE_BUFFER, before);
     label(GL_BUFFER, id, text);
     return {id, true};
 }

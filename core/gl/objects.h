@@ -54,7 +54,6 @@ private:
 /// Contract: the API is loaded. Tested by: gl_objects_gl_test.cpp
 class Buffer : public Object<Buffer> {
 public:
-    /// Leaves the GL_COPY_WRITE_BUFFER binding at 0.
     static Buffer make(std::string_view label);
     static void destroy(GLuint id) { DeleteBuffers(1, &id); }
 

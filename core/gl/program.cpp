@@ -1,5 +1,6 @@
 #include "core/gl/program.h"
 
+#include <algorithm>
 #include <chrono>
 #include <span>
 #include <vector>

@@ -5,8 +5,10 @@ namespace slabcast::gl {
 namespace {
 
 constexpr std::array<GLenum, StateGuard::kSwitches> kSwitchNames = {
-    GL_BLEND,        GL_CULL_FACE,   GL_DEPTH_TEST, GL_DITHER, GL_RASTERIZER_DISCARD,
-    GL_SCISSOR_TEST, GL_STENCIL_TEST};
+    GL_BLEND,           GL_CULL_FACE,          GL_DEPTH_TEST,
+    GL_DITHER,          GL_RASTERIZER_DISCARD, GL_SAMPLE_ALPHA_TO_COVERAGE,
+    GL_SAMPLE_COVERAGE, GL_SAMPLE_MASK,        GL_SCISSOR_TEST,
+    GL_STENCIL_TEST};
 
 struct PixelStore {
     GLenum name;
@@ -110,7 +112,7 @@ void StateGuard::saveBindings() {
         units_[i] = {integer(GL_TEXTURE_BINDING_2D), integer(GL_TEXTURE_BINDING_2D_ARRAY),
                      integer(GL_TEXTURE_BINDING_3D), integer(GL_SAMPLER_BINDING)};
     }
-    ActiveTexture(asEnum(activeTexture_));
+    ActiveTexture(GL_TEXTURE0); // the host's may be beyond the units that are restored
 }
 
 void StateGuard::restoreBindings() const {

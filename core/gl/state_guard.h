@@ -10,13 +10,15 @@ namespace slabcast::gl {
 /// left:
 /// - program, vertex array, draw and read framebuffer;
 /// - viewport, scissor box; colour mask, clear colour, depth mask; blend functions and equations;
-/// - whether blend, cull face, depth test, dither, rasterizer discard, scissor and stencil test are
-/// enabled;
+/// - whether blend, cull face, depth test, dither, rasterizer discard, sample alpha to coverage,
+/// sample coverage, sample mask, scissor and stencil test are enabled;
 /// - array, pixel unpack and pixel pack buffer, uniform buffer (generic and indexed 0 and 1, with
 /// their ranges);
 /// - pixel pack and unpack alignment, row length, image height and skips;
 /// - active unit; on units 0 to 7 the 2D, 2D array and 3D texture and the sampler.
-/// State per draw buffer (Enablei, ColorMaski, BlendFunci) is neither touched nor restored.
+/// Makes unit 0 the active one: what binds a texture without choosing a unit binds it there.
+/// Blending and the colour mask are saved of draw buffer 0 and restored to all draw buffers: a host
+/// that sets them one by one (Enablei, ColorMaski, BlendFunci, BlendEquationi) must do so again.
 /// Cost: about 90 glGet calls, no wait on most drivers. Tested by: state_guard_gl_test.cpp
 class StateGuard {
 public:
@@ -31,7 +33,7 @@ public:
 
     static constexpr int kUnits = 8;
     static constexpr int kUniformBuffers = 2;
-    static constexpr int kSwitches = 7;
+    static constexpr int kSwitches = 10;
     static constexpr int kPixelStores = 10;
 
 private:

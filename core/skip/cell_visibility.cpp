@@ -3,59 +3,46 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/transfer/table_axis.h"
+
 namespace slabcast {
 
 namespace {
 
 constexpr std::uint16_t kNone = 65535;
 
-/// Sampled value to table texel, as a rising line: where the texels' scale is negative (a file may
-/// hold a negative rescale slope) the table is read backwards, so that higher codes still reach
-/// higher texels.
-struct TableAxis {
-    double texelsPerSampled = 0.0;
-    double texelAtZero = 0.0;
-    bool backwards = false;
-    bool whole = false; // no axis at all: any value may meet any texel
-    int lastTexel = 0;
+/// The table texels that sampled values can reach, with grace on either side: one texel, or more
+/// where float32 is coarser than the table. Widened before they are clamped: a value well outside
+/// the table reads its end texel exactly and no neighbour, which keeps the air below a TF's first
+/// point empty.
+struct TableReach {
+    TableAxis axis;
 
-    /// Table texels, widened before they are clamped: a value well outside the table reads its end
-    /// texel exactly and no neighbour, which keeps the air below a TF's first point empty.
     std::uint16_t below(double sampled) const {
-        return whole ? 0 : clamped(std::floor(texelsPerSampled * sampled + texelAtZero) - 1.0);
+        return axis.hasSpan ? clamped(std::floor(axis.texelAt(sampled) - grace(sampled))) : 0;
     }
     std::uint16_t above(double sampled) const {
-        return whole ? clamped(lastTexel)
-                     : clamped(std::ceil(texelsPerSampled * sampled + texelAtZero) + 1.0);
+        return clamped(axis.hasSpan ? std::ceil(axis.texelAt(sampled) + grace(sampled))
+                                    : axis.lastTexel);
+    }
+
+private:
+    double grace(double sampled) const {
+        // Three interpolations in the shader, each of two roundings, and those of its uniforms.
+        const double rounding = 0x1p-21 * (std::abs(sampled) + std::abs(axis.firstSampled));
+        return std::max(1.0, 2.0 * rounding * axis.texelsPerSampled);
     }
     std::uint16_t clamped(double texel) const {
-        return std::uint16_t(std::clamp(texel, 0.0, double(lastTexel)));
+        return std::uint16_t(std::clamp(texel, 0.0, double(axis.lastTexel)));
     }
 };
 
-TableAxis tableAxis(const Texels& texels, const TransferTable& table) {
-    TableAxis axis;
-    axis.lastTexel = int(table.texels.size()) - 1;
-    const double texelsPerValue = axis.lastTexel / (table.lastValue - table.firstValue);
-    axis.texelsPerSampled = texelsPerValue * texels.valueScale;
-    axis.texelAtZero = texelsPerValue * (texels.valueBias - table.firstValue);
-    axis.whole = !std::isfinite(axis.texelsPerSampled) || !std::isfinite(axis.texelAtZero);
-    axis.backwards = axis.texelsPerSampled < 0.0;
-    if (axis.backwards) {
-        axis.texelsPerSampled = -axis.texelsPerSampled;
-        axis.texelAtZero = axis.lastTexel - axis.texelAtZero;
-    }
-    return axis;
-}
-
-/// Per texel in reading order: itself or the next one with alpha, kNone where none follows.
-std::vector<std::uint16_t> nextWithAlpha(const TransferTable& table, bool backwards) {
-    const std::size_t size = table.texels.size();
-    std::vector<std::uint16_t> next(size);
+/// Per texel: itself or the next one with alpha, kNone where none follows.
+std::vector<std::uint16_t> nextWithAlpha(const TransferTable& table) {
+    std::vector<std::uint16_t> next(table.texels.size());
     std::uint16_t nearest = kNone;
-    for (std::size_t i = size; i-- > 0;) {
-        const glm::vec4& texel = table.texels[backwards ? size - 1 - i : i];
-        nearest = texel.a > 0.0F ? std::uint16_t(i) : nearest;
+    for (std::size_t i = next.size(); i-- > 0;) {
+        nearest = table.texels[i].a > 0.0F ? std::uint16_t(i) : nearest;
         next[i] = nearest;
     }
     return next;
@@ -81,16 +68,16 @@ CellVisibility cellVisibility(const TexelCodes& codes, const Texels& texels,
     SLABCAST_EXPECTS(!table.texels.empty() && table.texels.size() <= kNone, table.texels.size());
     SLABCAST_EXPECTS(codes.lowSampled.size() == codes.highSampled.size(), codes.lowSampled.size());
     SLABCAST_EXPECTS(filterErrorSampled >= 0.0, filterErrorSampled);
-    const TableAxis axis = tableAxis(texels, table);
-    const std::vector<std::uint16_t> next = nextWithAlpha(table, axis.backwards);
+    const TableReach reach{tableAxis(texels, table)};
+    const std::vector<std::uint16_t> next = nextWithAlpha(table);
     const std::size_t count = codes.lowSampled.size();
     CellVisibility visibility{&codes, std::vector<std::uint16_t>(count),
                               std::vector<std::uint16_t>(count)};
     for (std::size_t code = 0; code < count; ++code) {
         const double low = double(codes.lowSampled[code]) - filterErrorSampled;
         const double high = double(codes.highSampled[code]) + filterErrorSampled;
-        visibility.firstVisible[code] = next[axis.below(low)];
-        visibility.reach[code] = axis.above(high);
+        visibility.firstVisible[code] = next[reach.below(low)];
+        visibility.reach[code] = reach.above(high);
     }
     return visibility;
 }

@@ -29,8 +29,7 @@ struct CellVisibility {
 
 /// For post-classification: the table is non-zero anywhere between the cell's minimum and maximum,
 /// widened by one table texel and by `filterErrorSampled` (what the texture unit's filter may add,
-/// in sampled units). Where higher codes are lower values, table texels are counted from the
-/// table's end. At most 65,535 table texels. Tested by: cell_visibility_test.cpp
+/// in sampled units). At most 65,535 table texels. Tested by: cell_visibility_test.cpp
 CellVisibility cellVisibility(const TexelCodes& codes, const Texels& texels,
                               const TransferTable& table, double filterErrorSampled);
 

@@ -116,7 +116,7 @@ void setSampling(GLenum target, GLint filter) {
     gl::TexParameteri(target, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
 }
 
-/// In slabs of a few MiB, so that the driver's staging copy stays small beside the volume.
+/// In slabs of 16 MiB, so that the driver's staging copy stays small beside the volume.
 void uploadSlabs(const Layout& layout, glm::ivec3 dims, const std::byte* data) {
     constexpr std::int64_t kSlabBytes = 16 << 20;
     const std::int64_t sliceBytes = std::int64_t{dims.x} * dims.y * layout.bytesPerTexel;
@@ -155,18 +155,25 @@ Result<gl::Texture> upload3d(const char* label, const Layout& layout, glm::ivec3
 
 } // namespace
 
-Result<MemoryForecast> forecastMemory(glm::ivec3 dims, VoxelType type, TexelFormat format) {
+std::int64_t uploadedBytesPerTexel(TexelFormat format, bool preclassified) {
+    return (preclassified ? kClassifiedLayout : layoutOf(format)).bytesPerTexel;
+}
+
+Result<MemoryForecast> forecastMemory(glm::ivec3 dims, VoxelType type, TexelFormat format,
+                                      bool preclassified) {
     const auto voxels = checkedByteCount(glm::i64vec3(dims), type);
     const auto texels = forecastTextureBytes(dims, format);
+    const auto uploaded = textureBytes(dims, uploadedBytesPerTexel(format, preclassified));
     const auto codes = textureBytes(dims, 2);
-    for (const Result<std::int64_t>* part : {&voxels, &texels, &codes}) {
+    for (const Result<std::int64_t>* part : {&voxels, &texels, &uploaded, &codes}) {
         if (!*part) {
             return tl::unexpected(part->error());
         }
     }
-    return MemoryForecast{.gpuTexelBytes = *texels,
+    return MemoryForecast{.gpuTexelBytes = *uploaded,
                           .hostVoxelBytes = *voxels,
                           .hostTexelBytes = *texels,
+                          .hostClassifiedBytes = preclassified ? *uploaded : 0,
                           .hostCodeBytes = *codes};
 }
 
@@ -174,10 +181,9 @@ Result<std::int64_t> forecastTextureBytes(glm::ivec3 dims, TexelFormat format) {
     return textureBytes(dims, layoutOf(format).bytesPerTexel);
 }
 
-Result<void> checkFits(glm::ivec3 dims, TexelFormat format, const gl::Caps& caps,
+Result<void> checkFits(glm::ivec3 dims, std::int64_t bytesPerTexel, const gl::Caps& caps,
                        std::optional<std::int64_t> gpuBudgetBytes) {
-    return checkExtent(dims, layoutOf(format).bytesPerTexel,
-                       {caps.maxTexture3DSize, gpuBudgetBytes});
+    return checkExtent(dims, bytesPerTexel, {caps.maxTexture3DSize, gpuBudgetBytes});
 }
 
 Result<gl::Texture> uploadTexels(const Texels& texels, const gl::Caps& caps) {
@@ -218,7 +224,7 @@ Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, const gl::
     gl::BindTexture(GL_TEXTURE_2D, texture.id());
     const auto columns = static_cast<GLsizei>(width);
     gl::TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA16F, columns, 1);
-    setSampling(GL_TEXTURE_2D, GL_LINEAR);
+    setSampling(GL_TEXTURE_2D, GL_NEAREST);
     gl::TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, columns, 1, GL_RGBA, GL_FLOAT, texels.data());
     if (const auto uploaded = takeUploadError("the transfer table"); !uploaded) {
         return tl::unexpected(uploaded.error());

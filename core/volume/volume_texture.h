@@ -17,13 +17,21 @@ namespace slabcast {
 struct MemoryForecast {
     std::int64_t gpuTexelBytes = 0;
     std::int64_t hostVoxelBytes = 0; // the volume as loaded
-    std::int64_t hostTexelBytes = 0; // the copy that is uploaded
-    std::int64_t hostCodeBytes = 0;  // codes that the skip structures are built from
-    std::int64_t hostBytes() const { return hostVoxelBytes + hostTexelBytes + hostCodeBytes; }
+    std::int64_t hostTexelBytes = 0; // what is uploaded, or classified first
+    std::int64_t hostClassifiedBytes = 0;
+    std::int64_t hostCodeBytes = 0; // codes that the skip structures are built from
+    std::int64_t hostBytes() const {
+        return hostVoxelBytes + hostTexelBytes + hostClassifiedBytes + hostCodeBytes;
+    }
 };
 
+/// Bytes per texel of the texture that is drawn from: the scalars' or, `preclassified`, the
+/// colours'.
+std::int64_t uploadedBytesPerTexel(TexelFormat format, bool preclassified);
+
 /// Fails: EmptyVolume, SizeOverflow. Tested by: texel_format_gl_test.cpp
-Result<MemoryForecast> forecastMemory(glm::ivec3 dims, VoxelType type, TexelFormat format);
+Result<MemoryForecast> forecastMemory(glm::ivec3 dims, VoxelType type, TexelFormat format,
+                                      bool preclassified = false);
 
 /// Fails: EmptyVolume, SizeOverflow.
 Result<std::int64_t> forecastTextureBytes(glm::ivec3 dims, TexelFormat format);
@@ -31,12 +39,13 @@ Result<std::int64_t> forecastTextureBytes(glm::ivec3 dims, TexelFormat format);
 /// Whether the texture stays within the device's 3D texture limit and the budget, if there is one.
 /// Fails: VolumeTooLarge, naming the limit and the smallest `--downsample N` that fits;
 /// EmptyVolume, SizeOverflow.
-Result<void> checkFits(glm::ivec3 dims, TexelFormat format, const gl::Caps& caps,
+Result<void> checkFits(glm::ivec3 dims, std::int64_t bytesPerTexel, const gl::Caps& caps,
                        std::optional<std::int64_t> gpuBudgetBytes = std::nullopt);
 
 /// The uploads below leave the GL state as they found it, go slab by slab, clamp to the edge and
-/// have one level. Fail: VolumeTooLarge, DeviceOutOfMemory, Internal (another GL error). Tested by:
-/// texel_format_gl_test.cpp
+/// have one level. To know their own errors they lower every error flag that was up before: a host
+/// that wants to hear of its own calls glGetError first. Fail: VolumeTooLarge, DeviceOutOfMemory,
+/// Internal (another GL error). Tested by: texel_format_gl_test.cpp
 
 /// Scalars: R8, R16 and R16F filtered; Rg8Exact (r high byte, g low byte) and R32fExact for
 /// texelFetch.
@@ -50,7 +59,7 @@ Result<gl::Texture> uploadClassified(const glm::u8vec4* texels, glm::ivec3 dims,
 Result<gl::Texture> uploadBytes3d(std::span<const std::uint8_t> bytes, glm::ivec3 dims,
                                   const gl::Caps& caps);
 
-/// A transfer table: RGBA16F, width x 1, filtered. For a 2D sampler at v = 0.5.
+/// A transfer table: RGBA16F, width x 1, for texelFetch on a sampler2D.
 Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, const gl::Caps& caps);
 
 } // namespace slabcast

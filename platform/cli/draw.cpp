@@ -34,7 +34,8 @@ Result<Stage> Stage::open(const SceneOptions& options) {
         return tl::unexpected(session.error());
     }
     Progress progress("reading " + options.input.volume);
-    Result<LoadedScene> loaded = openScene(options.input, *session);
+    Result<LoadedScene> loaded =
+        openScene(options.input, options.settings.classification, *session);
     if (!loaded) {
         return tl::unexpected(loaded.error());
     }
@@ -193,6 +194,8 @@ nlohmann::json toJson(const FramePlan& plan) {
             {"lattice", name(plan.lattice.kind)},
             {"variant", name(plan.variant)},
             {"tighten", plan.tighten},
+            {"termination", plan.variant.terminates ? nlohmann::json(plan.terminationAlpha)
+                                                    : nlohmann::json("off")},
             {"target", name(plan.target)},
             {"space", name(plan.space)},
             {"drawsNothing", plan.drawsNothing},

@@ -1,5 +1,6 @@
 #include "platform/cli/session.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -46,11 +47,14 @@ Result<Volume> openVolume(const InputOptions& options) {
         }
         volume = loadVolume(options.volume, load);
     }
-    return volume && options.downsample > 1 ? downsample(*volume, glm::ivec3(options.downsample))
-                                            : volume;
+    if (volume && options.downsample > 1) {
+        return downsample(*volume, glm::ivec3(options.downsample));
+    }
+    return volume;
 }
 
-Result<LoadedScene> openScene(const InputOptions& options, const Session& session) {
+Result<LoadedScene> openScene(const InputOptions& options, Classification classification,
+                              const Session& session) {
     Result<Volume> volume = openVolume(options);
     if (!volume) {
         return tl::unexpected(volume.error());
@@ -68,16 +72,20 @@ Result<LoadedScene> openScene(const InputOptions& options, const Session& sessio
     }
     const VolumeStatistics statistics = computeStatistics(*volume);
     info.modality = likelyModality(*volume, statistics);
+    const bool preclassified = classification == Classification::Pre;
     const TexelFormat format = chooseTexelFormat(volume->type, statistics, options.exact,
                                                  session.formats, &info.formatReason);
     const std::optional<std::int64_t> budget =
         options.gpuBudgetMib
             ? std::optional(static_cast<std::int64_t>(*options.gpuBudgetMib * 1048576.0))
             : std::nullopt;
-    if (Result<void> fits = checkFits(info.dims, format, session.caps, budget); !fits) {
+    if (Result<void> fits = checkFits(info.dims, uploadedBytesPerTexel(format, preclassified),
+                                      session.caps, budget);
+        !fits) {
         return tl::unexpected(fits.error());
     }
-    const Result<MemoryForecast> forecast = forecastMemory(info.dims, volume->type, format);
+    const Result<MemoryForecast> forecast =
+        forecastMemory(info.dims, volume->type, format, preclassified);
     if (!forecast) {
         return tl::unexpected(forecast.error());
     }

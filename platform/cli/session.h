@@ -51,9 +51,10 @@ struct LoadedScene {
     VolumeInfo info;
 };
 
-/// Chooses the texel format, checks that it fits before anything is allocated on the GPU, builds
-/// the scene.
-Result<LoadedScene> openScene(const InputOptions& options, const Session& session);
+/// Chooses the texel format, checks that what this classification uploads fits before anything is
+/// allocated on the GPU, builds the scene.
+Result<LoadedScene> openScene(const InputOptions& options, Classification classification,
+                              const Session& session);
 
 /// `tf`: a preset's name, a JSON file, or empty for the default of the volume's modality and range.
 Result<TransferFunction> chooseTransferFunction(const std::string& tf, const Scene& scene,

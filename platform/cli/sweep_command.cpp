@@ -4,6 +4,9 @@
 #include <fstream>
 
 #include <fmt/core.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "platform/cli/commands.h"
 #include "platform/cli/draw.h"
@@ -230,14 +233,31 @@ std::string csvOf(const json& rows) {
     return text;
 }
 
+/// Runs a program of these words and waits for it; what it prints goes to stderr. True where it
+/// ends well.
+bool run(std::vector<std::string> words) {
+    std::vector<char*> arguments;
+    for (std::string& word : words) {
+        arguments.push_back(word.data());
+    }
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
+    pid_t child = 0;
+    const bool started =
+        posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ) == 0;
+    posix_spawn_file_actions_destroy(&actions);
+    int status = 0;
+    return started && waitpid(child, &status, 0) == child && status == 0;
+}
+
 /// The page is made by a script from the JSON, so that it can be made again.
 Result<void> writePage(const std::string& folder) {
     const fs::path installed =
         fs::read_symlink("/proc/self/exe").parent_path() / "../share/slabcast/perf/report.py";
     const fs::path script = fs::exists(installed) ? installed : fs::path(SLABCAST_REPORT_SCRIPT);
-    const std::string command =
-        fmt::format("/usr/bin/python3 '{}' '{}' 1>&2", script.string(), folder);
-    if (std::system(command.c_str()) != 0) {
+    if (!run({"/usr/bin/python3", script.string(), folder})) {
         return fail(
             ErrorCode::FileUnwritable,
             fmt::format("{0}/sweep.json and sweep.csv are written, report.html is not: install "

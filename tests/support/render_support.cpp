@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 namespace slabcast::test {
 
@@ -10,7 +11,7 @@ namespace {
 
 template <class T>
 void appendVoxel(std::vector<std::byte>& bytes, double value) {
-    const T voxel = static_cast<T>(std::lround(value));
+    const T voxel = static_cast<T>(std::is_integral_v<T> ? std::round(value) : value);
     const auto* raw = reinterpret_cast<const std::byte*>(&voxel);
     bytes.insert(bytes.end(), raw, raw + sizeof voxel);
 }
@@ -28,8 +29,9 @@ Volume makeVolume(glm::ivec3 dims, VoxelType type, const VoxelFormula& formula,
         for (int y = 0; y < dims.y; ++y) {
             for (int x = 0; x < dims.x; ++x) {
                 const double value = formula({x, y, z});
-                type == VoxelType::U8 ? appendVoxel<std::uint8_t>(volume.voxels, value)
-                                      : appendVoxel<std::uint16_t>(volume.voxels, value);
+                type == VoxelType::U8    ? appendVoxel<std::uint8_t>(volume.voxels, value)
+                : type == VoxelType::U16 ? appendVoxel<std::uint16_t>(volume.voxels, value)
+                                         : appendVoxel<float>(volume.voxels, value);
             }
         }
     }

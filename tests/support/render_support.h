@@ -34,7 +34,7 @@ private:
 
 using VoxelFormula = std::function<double(glm::ivec3)>;
 
-/// Voxels from a formula; U8 or U16, one mm each where no spacing is given.
+/// Voxels from a formula; U8, U16 or F32, one mm each where no spacing is given.
 Volume makeVolume(glm::ivec3 dims, VoxelType type, const VoxelFormula& formula,
                   glm::dvec3 spacingMm = glm::dvec3(1.0));
 Volume constantVolume(glm::ivec3 dims, int value);
