@@ -7,7 +7,6 @@
 
 #include "core/gl/caps.h"
 #include "core/gl/debug.h"
-#include "core/gl/gpu_timer.h"
 #include "core/gl/program.h"
 #include "core/gl/state_guard.h"
 #include "platform/egl/egl_context.h"
@@ -227,54 +226,6 @@ void main() { colour = nobodyWritesThis; }
     EXPECT_EQ(link.error().code, ErrorCode::ShaderCompile);
     EXPECT_NE(link.error().detail.find("linking"), std::string::npos) << link.error().detail;
     takeErrorCount(); // some drivers report compiler errors to the debug output as well
-}
-
-TEST_F(GlObjects, TimerWithoutExtensionMeasuresNothing) {
-    gl::Caps without = caps();
-    without.timerQuery = false;
-    gl::GpuTimer timer(without);
-    EXPECT_FALSE(timer.available());
-    timer.begin();
-    timer.end();
-    gl::Finish();
-    EXPECT_FALSE(timer.poll().has_value());
-}
-
-TEST_F(GlObjects, TimerRingHandsOutEachSpanOnceAndDropsWhatDoesNotFit) {
-    gl::GpuTimer timer(caps());
-    if (!timer.available()) {
-        GTEST_SKIP() << "no EXT_disjoint_timer_query here";
-    }
-    const gl::StateGuard guard;
-    const gl::Texture target = gl::Texture::make("timed", GL_TEXTURE_2D);
-    const gl::Framebuffer framebuffer = gl::Framebuffer::make("timed");
-    gl::BindTexture(GL_TEXTURE_2D, target.id());
-    gl::TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA8, 256, 256);
-    gl::BindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
-    gl::FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.id(), 0);
-    const auto span = [&] {
-        timer.begin();
-        gl::Clear(GL_COLOR_BUFFER_BIT);
-        timer.end();
-    };
-    constexpr int kSpans = 11; // a ring of eight takes eight before the first poll
-    for (int i = 0; i < kSpans; ++i) {
-        span();
-    }
-    gl::Finish();
-    int measured = 0;
-    while (const auto ms = timer.poll()) {
-        EXPECT_GE(*ms, 0.0);
-        EXPECT_LT(*ms, 10000.0);
-        ++measured;
-    }
-    EXPECT_GT(measured, 0);
-    EXPECT_EQ(measured + timer.dropped(), kSpans);
-    EXPECT_GE(timer.dropped(), 3);
-    span();
-    gl::Finish();
-    EXPECT_EQ(timer.poll().has_value(), true);
-    EXPECT_FALSE(timer.poll().has_value());
 }
 
 TEST_F(GlObjects, DebugOutputCountsAndRestoresTheOuterOne) {

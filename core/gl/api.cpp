@@ -6,15 +6,11 @@ Result<void> loadApi(GetProc getProc) {
     SLABCAST_EXPECTS(getProc != nullptr, 0);
     const char* missing = nullptr;
 #define SLABCAST_GL_LOAD(name, spelling)                                                           \
-    name = reinterpret_cast<PFNGL##spelling##PROC>(getProc("gl" #name));
-#define SLABCAST_GL_LOAD_REQUIRED(name, spelling)                                                  \
-    SLABCAST_GL_LOAD(name, spelling)                                                               \
+    name = reinterpret_cast<PFNGL##spelling##PROC>(getProc("gl" #name));                           \
     if (name == nullptr && missing == nullptr) {                                                   \
         missing = "gl" #name;                                                                      \
     }
-    SLABCAST_GL_FUNCTIONS(SLABCAST_GL_LOAD_REQUIRED)
-    SLABCAST_GL_EXTENSION_FUNCTIONS(SLABCAST_GL_LOAD)
-#undef SLABCAST_GL_LOAD_REQUIRED
+    SLABCAST_GL_FUNCTIONS(SLABCAST_GL_LOAD)
 #undef SLABCAST_GL_LOAD
     if (missing != nullptr) {
         return fail(ErrorCode::DeviceUnsupported,

@@ -17,7 +17,6 @@ namespace slabcast::gl {
 
 #define SLABCAST_GL_DECLARE(name, spelling) inline PFNGL##spelling##PROC name = nullptr;
 SLABCAST_GL_FUNCTIONS(SLABCAST_GL_DECLARE)
-SLABCAST_GL_EXTENSION_FUNCTIONS(SLABCAST_GL_DECLARE)
 #undef SLABCAST_GL_DECLARE
 
 /// What the platform resolves names with (eglGetProcAddress and its like).

@@ -6,37 +6,34 @@
 // clang-format off
 // Of core GLES 3.2, in alphabetical order.
 #define SLABCAST_GL_FUNCTIONS(X)                                                                  \
-    X(ActiveTexture, ACTIVETEXTURE) X(AttachShader, ATTACHSHADER) X(BeginQuery, BEGINQUERY)       \
-    X(BindBuffer, BINDBUFFER) X(BindBufferBase, BINDBUFFERBASE)                                   \
-    X(BindBufferRange, BINDBUFFERRANGE) X(BindFramebuffer, BINDFRAMEBUFFER)                       \
-    X(BindRenderbuffer, BINDRENDERBUFFER) X(BindSampler, BINDSAMPLER) X(BindTexture, BINDTEXTURE) \
-    X(BindVertexArray, BINDVERTEXARRAY) X(BlendEquation, BLENDEQUATION)                           \
-    X(BlendEquationSeparate, BLENDEQUATIONSEPARATE) X(BlendFunc, BLENDFUNC)                       \
-    X(BlendFuncSeparate, BLENDFUNCSEPARATE) X(BlitFramebuffer, BLITFRAMEBUFFER)                   \
-    X(BufferData, BUFFERDATA) X(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS) X(Clear, CLEAR)   \
+    X(ActiveTexture, ACTIVETEXTURE) X(AttachShader, ATTACHSHADER) X(BindBuffer, BINDBUFFER)       \
+    X(BindBufferBase, BINDBUFFERBASE) X(BindBufferRange, BINDBUFFERRANGE)                         \
+    X(BindFramebuffer, BINDFRAMEBUFFER) X(BindRenderbuffer, BINDRENDERBUFFER)                     \
+    X(BindSampler, BINDSAMPLER) X(BindTexture, BINDTEXTURE) X(BindVertexArray, BINDVERTEXARRAY)   \
+    X(BlendEquation, BLENDEQUATION) X(BlendEquationSeparate, BLENDEQUATIONSEPARATE)               \
+    X(BlendFunc, BLENDFUNC) X(BlendFuncSeparate, BLENDFUNCSEPARATE)                               \
+    X(BlitFramebuffer, BLITFRAMEBUFFER) X(BufferData, BUFFERDATA)                                 \
+    X(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS) X(Clear, CLEAR)                             \
     X(ClearBufferfv, CLEARBUFFERFV) X(ClearColor, CLEARCOLOR) X(ColorMask, COLORMASK)             \
     X(CompileShader, COMPILESHADER) X(CreateProgram, CREATEPROGRAM) X(CreateShader, CREATESHADER) \
     X(DebugMessageCallback, DEBUGMESSAGECALLBACK) X(DeleteBuffers, DELETEBUFFERS)                 \
     X(DeleteFramebuffers, DELETEFRAMEBUFFERS) X(DeleteProgram, DELETEPROGRAM)                     \
-    X(DeleteQueries, DELETEQUERIES) X(DeleteRenderbuffers, DELETERENDERBUFFERS)                   \
-    X(DeleteSamplers, DELETESAMPLERS) X(DeleteShader, DELETESHADER)                               \
-    X(DeleteTextures, DELETETEXTURES) X(DeleteVertexArrays, DELETEVERTEXARRAYS)                   \
-    X(DepthMask, DEPTHMASK) X(DetachShader, DETACHSHADER) X(Disable, DISABLE)                     \
-    X(DrawArrays, DRAWARRAYS) X(DrawArraysInstanced, DRAWARRAYSINSTANCED)                         \
-    X(DrawBuffers, DRAWBUFFERS) X(Enable, ENABLE)                                                 \
-    X(EnableVertexAttribArray, ENABLEVERTEXATTRIBARRAY) X(EndQuery, ENDQUERY) X(Finish, FINISH)   \
+    X(DeleteRenderbuffers, DELETERENDERBUFFERS) X(DeleteSamplers, DELETESAMPLERS)                 \
+    X(DeleteShader, DELETESHADER) X(DeleteTextures, DELETETEXTURES)                               \
+    X(DeleteVertexArrays, DELETEVERTEXARRAYS) X(DepthMask, DEPTHMASK)                             \
+    X(DetachShader, DETACHSHADER) X(Disable, DISABLE) X(DrawArrays, DRAWARRAYS)                   \
+    X(DrawArraysInstanced, DRAWARRAYSINSTANCED) X(DrawBuffers, DRAWBUFFERS) X(Enable, ENABLE)     \
+    X(EnableVertexAttribArray, ENABLEVERTEXATTRIBARRAY) X(Finish, FINISH)                         \
     X(FramebufferRenderbuffer, FRAMEBUFFERRENDERBUFFER)                                           \
     X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D) X(GenBuffers, GENBUFFERS)                       \
-    X(GenFramebuffers, GENFRAMEBUFFERS) X(GenQueries, GENQUERIES)                                 \
-    X(GenRenderbuffers, GENRENDERBUFFERS) X(GenSamplers, GENSAMPLERS) X(GenTextures, GENTEXTURES) \
-    X(GenVertexArrays, GENVERTEXARRAYS) X(GetActiveUniform, GETACTIVEUNIFORM)                     \
-    X(GetBooleanv, GETBOOLEANV) X(GetError, GETERROR) X(GetFloatv, GETFLOATV)                     \
-    X(GetInteger64i_v, GETINTEGER64I_V) X(GetInteger64v, GETINTEGER64V)                           \
+    X(GenFramebuffers, GENFRAMEBUFFERS) X(GenRenderbuffers, GENRENDERBUFFERS)                     \
+    X(GenSamplers, GENSAMPLERS) X(GenTextures, GENTEXTURES) X(GenVertexArrays, GENVERTEXARRAYS)   \
+    X(GetActiveUniform, GETACTIVEUNIFORM) X(GetBooleanv, GETBOOLEANV) X(GetError, GETERROR)       \
+    X(GetFloatv, GETFLOATV) X(GetInteger64i_v, GETINTEGER64I_V) X(GetInteger64v, GETINTEGER64V)   \
     X(GetIntegeri_v, GETINTEGERI_V) X(GetIntegerv, GETINTEGERV) X(GetObjectLabel, GETOBJECTLABEL) \
     X(GetPointerv, GETPOINTERV) X(GetProgramInfoLog, GETPROGRAMINFOLOG)                           \
-    X(GetProgramiv, GETPROGRAMIV) X(GetQueryObjectuiv, GETQUERYOBJECTUIV)                         \
-    X(GetQueryiv, GETQUERYIV) X(GetShaderInfoLog, GETSHADERINFOLOG) X(GetShaderiv, GETSHADERIV)   \
-    X(GetString, GETSTRING) X(GetStringi, GETSTRINGI)                                             \
+    X(GetProgramiv, GETPROGRAMIV) X(GetShaderInfoLog, GETSHADERINFOLOG)                           \
+    X(GetShaderiv, GETSHADERIV) X(GetString, GETSTRING) X(GetStringi, GETSTRINGI)                 \
     X(GetUniformBlockIndex, GETUNIFORMBLOCKINDEX) X(GetUniformLocation, GETUNIFORMLOCATION)       \
     X(IsBuffer, ISBUFFER) X(IsEnabled, ISENABLED) X(IsFramebuffer, ISFRAMEBUFFER)                 \
     X(IsProgram, ISPROGRAM) X(IsSampler, ISSAMPLER) X(IsTexture, ISTEXTURE)                       \
@@ -49,8 +46,4 @@
     X(TexSubImage2D, TEXSUBIMAGE2D) X(TexSubImage3D, TEXSUBIMAGE3D) X(Uniform1i, UNIFORM1I)       \
     X(Uniform2i, UNIFORM2I) X(Uniform3fv, UNIFORM3FV) X(UniformBlockBinding, UNIFORMBLOCKBINDING) \
     X(UseProgram, USEPROGRAM) X(VertexAttribPointer, VERTEXATTRIBPOINTER) X(Viewport, VIEWPORT)
-
-// Of extensions: null where the driver lacks them; gl::Caps says which may be called.
-#define SLABCAST_GL_EXTENSION_FUNCTIONS(X)                                                        \
-    X(GetQueryObjectui64vEXT, GETQUERYOBJECTUI64VEXT)
 // clang-format on

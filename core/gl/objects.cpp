@@ -83,18 +83,6 @@ Sampler Sampler::make(std::string_view text) {
     return {id, true};
 }
 
-Query Query::make() {
-    return {generate(GenQueries), true};
-}
-
-void Query::begin(GLenum target, std::string_view text) {
-    BeginQuery(target, id());
-    if (!labelled_) {
-        label(GL_QUERY, id(), text);
-        labelled_ = true;
-    }
-}
-
 ProgramObject ProgramObject::make(std::string_view text) {
     const GLuint id = CreateProgram();
     label(GL_PROGRAM, id, text);

@@ -100,18 +100,6 @@ private:
     using Object::Object;
 };
 
-/// A query object exists from its first BeginQuery on: it is labelled by the first begin().
-class Query : public Object<Query> {
-public:
-    static Query make();
-    static void destroy(GLuint id) { DeleteQueries(1, &id); }
-    void begin(GLenum target, std::string_view label);
-
-private:
-    using Object::Object;
-    bool labelled_ = false;
-};
-
 class ProgramObject : public Object<ProgramObject> {
 public:
     static ProgramObject make(std::string_view label);
