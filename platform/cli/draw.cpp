@@ -218,8 +218,4 @@ nlohmann::json toJson(const Result<WorkCounters>& counters) {
             {"skip_fetches", counters->skipFetches}};
 }
 
-std::string commit() {
-    return SLABCAST_COMMIT;
-}
-
 } // namespace slabcast

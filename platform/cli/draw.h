@@ -64,6 +64,6 @@ nlohmann::json toJson(const VolumeInfo& info);
 nlohmann::json toJson(const FramePlan& plan);
 nlohmann::json toJson(const FrameTimes& times);
 nlohmann::json toJson(const Result<WorkCounters>& counters); // null where they cannot be had
-std::string commit();
+std::string commit(); // that was built; defined in a source that the build writes
 
 } // namespace slabcast
