@@ -4,8 +4,8 @@
 precision highp sampler2D;
 uniform sampler2D transferTable;
 
-/// Two fetches and a float32 interpolation: texture units may filter with 8-bit weights, and what is zero in both
-/// texels must be exactly zero between them.
+/// Two fetches and a float32 interpolation: texture units may filter with 8-bit weights, and what
+/// is zero in both texels must be exactly zero between them.
 vec4 materialOf(float value) {
     precise float at = clamp((value - tableMap.y) * tableMap.x, 0.0, tableMap.w);
     int texel = int(at);

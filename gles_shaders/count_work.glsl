@@ -1,5 +1,6 @@
-// Counts: the work of the same walk instead of its colour, summed by additive blending into two float32 targets.
-layout(location = 0) out vec4 work0; // fragments, layers in the segment, layers evaluated, skip fetches
+// Counts: the work of the same walk instead of its colour, summed by additive blending into two
+// float32 targets.
+layout(location = 0) out vec4 work0; // fragments, layers in the segment, evaluated, skip fetches
 layout(location = 1) out vec4 work1; // volume fetches
 int countedLayers = 0;
 int countedFetches = 0;

@@ -1,4 +1,5 @@
-// The scalar field from eight fetches, interpolated in float32: no filter's weights, every voxel as it is stored.
+// The scalar field from eight fetches, interpolated in float32: no filter's weights, every voxel as
+// it is stored.
 uniform sampler3D volumeTexels;
 const int kFetchesPerSample = 8;
 
@@ -16,9 +17,12 @@ float sampleField(vec3 uvw) {
     ivec3 low = ivec3(at);
     ivec3 high = min(low + 1, ivec3(size) - 1);
     vec3 f = at - vec3(low);
-    vec2 y0 = vec2(mix(voxelAt(low), voxelAt(ivec3(high.x, low.y, low.z)), f.x),
-                   mix(voxelAt(ivec3(low.x, high.y, low.z)), voxelAt(ivec3(high.x, high.y, low.z)), f.x));
-    vec2 y1 = vec2(mix(voxelAt(ivec3(low.x, low.y, high.z)), voxelAt(ivec3(high.x, low.y, high.z)), f.x),
-                   mix(voxelAt(ivec3(low.x, high.y, high.z)), voxelAt(high), f.x));
-    return mix(mix(y0.x, y0.y, f.y), mix(y1.x, y1.y, f.y), f.z);
+    // In x for the four edges (y, z) = 00 10 01 11, then y for two, then z.
+    vec4 left = vec4(voxelAt(low), voxelAt(ivec3(low.x, high.y, low.z)),
+                     voxelAt(ivec3(low.x, low.y, high.z)), voxelAt(ivec3(low.x, high.yz)));
+    vec4 right = vec4(voxelAt(ivec3(high.x, low.yz)), voxelAt(ivec3(high.xy, low.z)),
+                      voxelAt(ivec3(high.x, low.y, high.z)), voxelAt(high));
+    vec4 x = mix(left, right, f.x);
+    vec2 y = mix(x.xz, x.yw, f.y);
+    return mix(y.x, y.y, f.z);
 }

@@ -5,7 +5,7 @@ precision highp sampler3D;
 precision highp usampler3D;
 
 layout(std140) uniform FrameBlock {
-    vec4 centre0;        // xyz: uvw where the central ray crosses the sphere's depth; w: layers in total / 2
+    vec4 centre0;        // xyz: uvw where the central ray crosses the sphere's depth; w: total / 2
     vec4 centreX;        // per pixel to the right; w: offset of the near plane (planar lattice)
     vec4 centreY;        // per pixel up; w: near depth (shells)
     vec4 direction0;     // xyz: uvw per unit of depth; w: spacing of the layers, view units
@@ -14,14 +14,15 @@ layout(std140) uniform FrameBlock {
     vec4 tangent;        // xy: of the central ray; zw: per pixel
     vec4 sphere;         // xyz: the sphere's centre (x, y, depth); w: its distance
     vec4 viewTangent;    // xy: tangent of the viewport's centre; zw: 1 / half extent
-    vec4 viewport;       // xy: centre in pixels; z: 1 for shells, 0 for planar; w: termination threshold
-    vec4 tableMap;       // table texel = (sampled - y) * x; z: 1 / reference length of pre-classified texels; w: last texel
+    vec4 viewport;       // xy: centre in pixels; z: 1 for shells, 0 for planar; w: termination
+    vec4 tableMap;       // xy: table texel = (sampled - y) * x; w: last texel;
+                         // z: 1 / reference length of pre-classified texels, per mm
     vec4 skipMap;        // xyz: blocks per unit of uvw; w: free length per count, mm
     vec4 decode;         // xy: sampled value of an exact texel = dot(texel.rg, xy)
-    vec4 gradientRow[3]; // rows: patient-space gradient from differences per voxel; w of row 0: gradient floor
+    vec4 gradientRow[3]; // rows: patient-space gradient from differences per voxel; w of 0: floor
     vec4 patientRow[3];  // rows: patient-space direction from one in uvw
     vec4 material;       // ambient, diffuse, specular, shininess
-    ivec4 counts;        // x: first plane, y: planes drawn, z: layers per plane, w: planes per outline
+    ivec4 counts;        // first plane, planes drawn, layers per plane, planes per outline
     ivec4 skipBlocks;    // xyz: number of blocks - 1
 };
 #define firstPlane counts.x

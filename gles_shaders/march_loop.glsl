@@ -1,5 +1,6 @@
-// A segment as a loop, for desktop-class GPUs and lengths beyond the unroll list. Leaping and sampling are loops of
-// their own, so that neighbouring fragments leap together and then sample together.
+// A segment as a loop, for desktop-class GPUs and lengths beyond the unroll list. Leaping and
+// sampling are loops of their own, so that neighbouring fragments leap together and then sample
+// together.
 vec4 march(Ray ray, ivec2 range) {
     vec4 sum = vec4(0.0);
     int i = range.x;

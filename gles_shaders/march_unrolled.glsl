@@ -1,4 +1,5 @@
-// A segment without a loop: the host writes REPEAT_LAYERS(X) as X(0) X(1) ... for the variant's length.
+// A segment without a loop: the host writes REPEAT_LAYERS(X) as X(0) X(1) ... for the variant's
+// length.
 struct Walk {
     int decided; // layers before this one are known to be free or not
     bool free;

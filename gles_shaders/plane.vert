@@ -1,4 +1,5 @@
-// One proxy plane per instance, back to front. The unit polygon is static; where it lies comes from the outlines.
+// One proxy plane per instance, back to front. The unit polygon is static; where it lies comes from
+// the outlines.
 #include "frame.glsl"
 
 layout(location = 0) in vec2 unitPolygon;

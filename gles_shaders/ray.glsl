@@ -1,5 +1,5 @@
-// The ray of a fragment, in units of layers: at offset o it is at centre + o * step. Mirrors rayAt() in
-// core/frame/lattice.cpp.
+// The ray of a fragment, in units of layers: at offset o it is at centre + o * step. Mirrors
+// rayAt() in core/frame/lattice.cpp.
 struct Ray {
     vec3 centre;
     vec3 step;

@@ -1,4 +1,5 @@
-// A fragment of a proxy plane: composites its segment of the ray, front to back. Planes are blended over each other.
+// A fragment of a proxy plane: composites its segment of the ray, front to back. Planes are blended
+// over each other.
 #include "frame.glsl"
 flat in int plane;
 

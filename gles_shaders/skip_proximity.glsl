@@ -1,5 +1,6 @@
-// Proximity clouds (Tukora 2020, section 2.3), one byte per block: 0 where something visible may be met, else
-// 1 + the free distance around any point of the block in units of skipMap.w. See core/skip/proximity_cloud.h.
+// Proximity clouds (Tukora 2020, section 2.3), one byte per block: 0 where something visible may be
+// met, else 1 + the free distance around any point of the block in units of skipMap.w. See
+// core/skip/proximity_cloud.h.
 uniform usampler3D freeLengths;
 
 struct Stretch {
@@ -17,15 +18,17 @@ int layersWithin(int count, Ray ray) {
     return int(ceil(float(count - 1) * skipMap.w * kBelow / ray.layerLengthMm));
 }
 
-/// One fetch in the segment's middle proves all of it empty, where the free length reaches both ends.
+/// One fetch in the segment's middle proves all of it empty, where the free length reaches both
+/// ends.
 bool segmentIsEmpty(Ray ray, ivec2 range) {
     int middle = (range.x + range.y - 1) / 2;
     int count = freeCount(samplePosition(ray, middle) * skipMap.xyz);
-    return count > 0 && max(1, layersWithin(count, ray)) > max(middle - range.x, range.y - 1 - middle);
+    int reach = max(middle - range.x, range.y - 1 - middle);
+    return count > 0 && max(1, layersWithin(count, ray)) > reach;
 }
 
-/// What one fetch decides: all layers within the block, free or not, and those within its free length. Blocks are
-/// tested with a voxel's margin, so rounding at their faces does not matter.
+/// What one fetch decides: all layers within the block, free or not, and those within its free
+/// length. Blocks are tested with a voxel's margin, so rounding at their faces does not matter.
 Stretch stretchAt(vec3 uvw, Ray ray) {
     vec3 position = uvw * skipMap.xyz;
     int count = freeCount(position);

@@ -25,12 +25,13 @@ struct ViewTarget {
     TargetEncoding encoding = TargetEncoding::Encoded;
 };
 
-/// Work of one frame. A fetch is one texel address given to a texture unit (filtered or not).
+/// Work of one frame. A fetch is one texel address given to a texture unit (filtered or not). A
+/// layer is skipped that lies inside the box and is not evaluated: invisible, or behind opaque
+/// material.
 struct WorkCounters {
     std::int64_t fragments = 0;
     std::int64_t layersEvaluated = 0;
-    std::int64_t layersSkipped =
-        0; // inside the box but not evaluated: skipped or behind opaque material
+    std::int64_t layersSkipped = 0;
     std::int64_t volumeFetches = 0;
     std::int64_t skipFetches = 0;
 };
