@@ -112,7 +112,7 @@ def _reciprocal(value):
 
 def _legend_above(axes, narrow, y=1.0):
     axes.legend(loc="lower left", bbox_to_anchor=(0, y), borderaxespad=0.2, fontsize=8,
-                ncol=1 if narrow else 4, handlelength=1.6, columnspacing=1.4)
+                ncol=1 if narrow else 2, handlelength=1.6, columnspacing=1.4)
 
 
 def speed_ups(sweep, narrow):
