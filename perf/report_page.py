@@ -76,7 +76,7 @@ def masthead(sweep):
     if device.get("software"):
         notice = ('<p class="notice"><strong>Drawn by a software driver.</strong> The processor stands in for a '
                   "GPU: these milliseconds say nothing about a headset. Compare rows of this page with one "
-                  "another, and read the work counters, which hold on any device.</p>")
+                  "another, and read the work counters, which do not depend on speed.</p>")
     return (f'<header><p class="kicker">Slabcast · ratio sweep</p><h1>How many planes, how many layers each?</h1>'
             f'<p class="lede">{line}</p>{notice}{findings(sweep)}</header>')
 

@@ -172,38 +172,6 @@ TEST(CellVisibility, OfAlphaIsAnyCornerWithAlpha) {
     }
 }
 
-RC_GTEST_PROP(CellVisibility, AnyIsTrueExactlyWhereSomeCellIs, ()) {
-    SkipScene scene = randomTableScene();
-    const glm::ivec3 dims(*rc::gen::inRange(1, 5), *rc::gen::inRange(1, 5),
-                          *rc::gen::inRange(1, 5));
-    const TransferTable table = scene.table;
-    const Texels texels = scene.texels;
-    scene = constantScene(dims, 0, table);
-    scene.texels.valueScale = texels.valueScale;
-    scene.texels.valueBias = texels.valueBias;
-    for (std::uint16_t& code : scene.codes.codes) {
-        code = std::uint16_t(*rc::gen::inRange(0, 256));
-    }
-    const CellVisibility visibility = scene.visibility();
-    bool any = false;
-    for (int z = 0; z < dims.z; ++z) {
-        for (int y = 0; y < dims.y; ++y) {
-            for (int x = 0; x < dims.x; ++x) {
-                std::uint16_t low = 65535;
-                std::uint16_t high = 0;
-                for (int corner = 0; corner < 8; ++corner) {
-                    const glm::ivec3 offset(corner & 1, (corner >> 1) & 1, corner >> 2);
-                    const auto code = scene.code(glm::min(glm::ivec3(x, y, z) + offset, dims - 1));
-                    low = std::min(low, code);
-                    high = std::max(high, code);
-                }
-                any = any || visibility.visible(low, high);
-            }
-        }
-    }
-    RC_ASSERT(visibility.anyVisible() == any);
-}
-
 TEST(CellVisibility, BreachedContractsAbort) {
     SkipScene scene = constantScene({1, 1, 1}, 0, {});
     EXPECT_DEATH(scene.visibility(), "cellVisibility: expects");

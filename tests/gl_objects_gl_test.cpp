@@ -20,18 +20,6 @@ gl::DeviceStrings deviceStrings(std::string version) {
     return {"Vendor", "Renderer", std::move(version), {}};
 }
 
-constexpr const char* kVertexText = R"(#version 320 es
-void main() {
-    gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0);
-}
-)";
-constexpr const char* kFragmentText = R"(#version 320 es
-precision highp float;
-uniform vec4 tint;
-out vec4 colour;
-void main() { colour = tint; }
-)";
-
 } // namespace
 
 TEST(Caps, ReadsTheVersionOrRefuses) {
@@ -188,7 +176,7 @@ TEST_F(GlObjects, ForgottenAndBorrowedNamesAreNotDeleted) {
 }
 
 TEST_F(GlObjects, ProgramBuildsAndFindsUniforms) {
-    auto program = gl::buildProgram("tint", kVertexText, kFragmentText);
+    auto program = gl::buildProgram("tint", test::kTintVertexText, test::kTintFragmentText);
     ASSERT_TRUE(program.has_value()) << program.error().detail;
     EXPECT_GT(program->buildMs(), 0.0);
     EXPECT_GE(program->uniform("tint"), 0);
@@ -207,8 +195,9 @@ TEST_F(GlObjects, ComputeProgramBuilds) {
 }
 
 TEST_F(GlObjects, BrokenShaderNamesProgramStageAndReason) {
-    const std::string broken = std::string(kFragmentText) + "\nfloat f() { return nowhere; }\n";
-    const auto compile = gl::buildProgram("broken", kVertexText, broken);
+    const std::string broken =
+        std::string(test::kTintFragmentText) + "\nfloat f() { return nowhere; }\n";
+    const auto compile = gl::buildProgram("broken", test::kTintVertexText, broken);
     ASSERT_FALSE(compile.has_value());
     EXPECT_EQ(compile.error().code, ErrorCode::ShaderCompile);
     for (const char* part : {"broken", "fragment shader", "nowhere"}) {
@@ -216,7 +205,7 @@ TEST_F(GlObjects, BrokenShaderNamesProgramStageAndReason) {
     }
     EXPECT_EQ(compile.error().detail.find('\n'), std::string::npos);
 
-    const auto link = gl::buildProgram("unlinked", kVertexText, R"(#version 320 es
+    const auto link = gl::buildProgram("unlinked", test::kTintVertexText, R"(#version 320 es
 precision highp float;
 in vec4 nobodyWritesThis;
 out vec4 colour;

@@ -15,18 +15,6 @@ namespace slabcast {
 
 namespace {
 
-constexpr const char* kVertexText = R"(#version 320 es
-void main() {
-    gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0);
-}
-)";
-constexpr const char* kFragmentText = R"(#version 320 es
-precision highp float;
-uniform vec4 tint;
-out vec4 colour;
-void main() { colour = tint; }
-)";
-
 /// The documented state, read one by one: name of the state -> its value.
 using Snapshot = std::map<std::string, std::vector<double>>;
 
@@ -134,7 +122,8 @@ struct Owner {
     gl::Framebuffer draw = gl::Framebuffer::make("owner");
     gl::Framebuffer read = gl::Framebuffer::make("owner");
     gl::VertexArray array = gl::VertexArray::make("owner");
-    gl::Program program = *gl::buildProgram("owner", kVertexText, kFragmentText);
+    gl::Program program =
+        *gl::buildProgram("owner", test::kTintVertexText, test::kTintFragmentText);
 
     void bindAll() const {
         program.use();

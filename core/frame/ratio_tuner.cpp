@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kShrink = 4;
 constexpr int kTimedFrames = 3;
-/// A ratio whose first frame takes so many times the best one is out of the race; those after it,
-/// of shorter segments, are too.
+/// A ratio whose first timed frame takes so many times the best one's is out of the race; those
+/// after it, of shorter segments, are too.
 constexpr double kHopeless = 8.0;
 
 double drawMs(Renderer& renderer, const Scene& scene, const FramePlan& plan,
@@ -37,7 +37,7 @@ std::vector<ViewTarget> shrunk(std::span<const ViewTarget> views) {
     return small;
 }
 
-/// Median of a few frames after one to warm up, or that one's time where it is hopeless.
+/// Median of a few frames after one to warm up, or the first of them where it is hopeless.
 double medianMs(Renderer& renderer, const Scene& scene, const FramePlan& plan,
                 std::span<const ViewTarget> views, double bestMs) {
     (void)drawMs(renderer, scene, plan, views); // compiles

@@ -50,19 +50,6 @@ std::vector<std::uint16_t> nextWithAlpha(const TransferTable& table) {
 
 } // namespace
 
-bool CellVisibility::anyVisible() const {
-    // Neighbouring cells share corners, so their ranges overlap, and together they leave no gap
-    // between the volume's smallest and largest code: what is visible in that range is visible in
-    // some cell.
-    std::uint16_t lowest = kNone;
-    std::uint16_t highest = 0;
-    for (const std::uint16_t code : texels->codes) {
-        lowest = std::min(lowest, code);
-        highest = std::max(highest, code);
-    }
-    return lowest <= highest && visible(lowest, highest);
-}
-
 CellVisibility cellVisibility(const TexelCodes& codes, const Texels& texels,
                               const TransferTable& table, double filterErrorSampled) {
     SLABCAST_EXPECTS(!table.texels.empty() && table.texels.size() <= kNone, table.texels.size());

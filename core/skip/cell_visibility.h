@@ -22,9 +22,6 @@ struct CellVisibility {
     bool visible(std::uint16_t minCode, std::uint16_t maxCode) const {
         return firstVisible[minCode] <= reach[maxCode];
     }
-    /// Whether any cell of the volume is: exact, from the smallest and largest code. Cost: one pass
-    /// over the codes.
-    bool anyVisible() const;
 };
 
 /// For post-classification: the table is non-zero anywhere between the cell's minimum and maximum,

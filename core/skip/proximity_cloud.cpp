@@ -186,23 +186,6 @@ bool transformAxis(std::vector<std::uint32_t>& squared, const AxisLines& axis, s
     return parallelFor(axis.planes, 1, transformPlanes, cancel);
 }
 
-/// Counts the occupied blocks and bounds them.
-void measure(const Occupancy& occupancy, ProximityCloud& cloud) {
-    const std::uint8_t* block = occupancy.occupied.data();
-    cloud.occupiedMin = occupancy.blocks;
-    for (int z = 0; z < occupancy.blocks.z; ++z) {
-        for (int y = 0; y < occupancy.blocks.y; ++y) {
-            for (int x = 0; x < occupancy.blocks.x; ++x) {
-                if (*block++ != 0) {
-                    ++cloud.occupiedBlocks;
-                    cloud.occupiedMin = glm::min(cloud.occupiedMin, glm::ivec3(x, y, z));
-                    cloud.occupiedMax = glm::max(cloud.occupiedMax, glm::ivec3(x, y, z));
-                }
-            }
-        }
-    }
-}
-
 /// Squared gaps to bytes: 0 where occupied, else one more than the whole quanta of the length.
 bool writeFreeLengths(const Occupancy& occupancy, const std::vector<std::uint32_t>& squared,
                       double shortest, ProximityCloud& cloud, const CancelToken* cancel) {
@@ -238,7 +221,8 @@ Result<ProximityCloud> buildProximityCloud(const CellVisibility& visibility,
                          .blockEdgeVoxels = blockEdgeVoxels,
                          .quantumMm = geometry.smallestVoxelEdgeMm(),
                          .freeLengths = std::vector<std::uint8_t>(occupied.size(), 255)};
-    measure(*occupancy, cloud);
+    cloud.occupiedBlocks = std::count_if(occupied.begin(), occupied.end(),
+                                         [](std::uint8_t mark) { return mark != 0; });
     if (cloud.occupiedBlocks == 0) {
         return cloud;
     }

@@ -23,9 +23,6 @@ struct ProximityCloud {
     double quantumMm = 1.0;
     std::vector<std::uint8_t> freeLengths;
     std::int64_t occupiedBlocks = 0;
-    glm::ivec3 occupiedMin{
-        0}; // first and last occupied block along each axis; min > max where none is
-    glm::ivec3 occupiedMax{-1};
 };
 
 /// Box-to-box lower bounds: exact Euclidean transform (separable lower envelopes) of the occupied

@@ -8,6 +8,23 @@
 
 namespace slabcast {
 
+namespace test {
+
+/// The smallest program: fills the viewport with the uniform `tint`.
+inline constexpr const char* kTintVertexText = R"(#version 320 es
+void main() {
+    gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0);
+}
+)";
+inline constexpr const char* kTintFragmentText = R"(#version 320 es
+precision highp float;
+uniform vec4 tint;
+out vec4 colour;
+void main() { colour = tint; }
+)";
+
+} // namespace test
+
 /// Gives a test a current GLES 3.2 context, one for the process, and fails the test if it raised a
 /// GL error. SLABCAST_MASK_EXTENSIONS ("mobile-strict", or names separated by commas) hides
 /// extensions from caps(). Where no context can be made the test fails: a machine without one must
