@@ -4,51 +4,12 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
-#include "core/volume/texel_codec.h"
+#include "core/reference/material.h"
+#include "core/reference/trilinear_field.h"
 
 namespace slabcast {
 
 namespace {
-
-/// Data value at a point of uvw.
-template <class Codec>
-class TrilinearField {
-public:
-    TrilinearField(const Texels& texels, Codec codec)
-        : data_(texelData(texels, codec)), dims_(texels.dims),
-          scale_(texels.valueScale / Codec::kUnitsPerSampled), bias_(texels.valueBias) {}
-
-    double at(glm::dvec3 uvw) const {
-        const glm::dvec3 place =
-            glm::clamp(uvw * glm::dvec3(dims_) - 0.5, glm::dvec3(0.0), glm::dvec3(dims_ - 1));
-        const glm::ivec3 low(place);
-        const glm::ivec3 high = glm::min(low + 1, dims_ - 1);
-        const glm::dvec3 f = place - glm::dvec3(low);
-        const auto alongX = [&](int y, int z) {
-            const auto* row = data_ + (std::int64_t{z} * dims_.y + y) * dims_.x;
-            return glm::mix(Codec::unpack(row[low.x]), Codec::unpack(row[high.x]), f.x);
-        };
-        const double front = glm::mix(alongX(low.y, low.z), alongX(high.y, low.z), f.y);
-        const double back = glm::mix(alongX(low.y, high.z), alongX(high.y, high.z), f.y);
-        return scale_ * glm::mix(front, back, f.z) + bias_;
-    }
-
-    glm::dvec3 dims() const { return glm::dvec3(dims_); }
-
-private:
-    const typename Codec::Texel* data_;
-    glm::ivec3 dims_;
-    double scale_; // data value = scale * units + bias
-    double bias_;
-};
-
-/// Colour in the compositing space, not premultiplied, and extinction in 1/mm.
-glm::dvec4 materialOf(const TransferFunction& tf, CompositingSpace space, double value) {
-    const TransferSample sample = evaluate(tf, value);
-    const glm::dvec3 color =
-        space == CompositingSpace::Linear ? linearFromSrgb(sample.color) : sample.color;
-    return {color, extinctionPerMm(sample.opacity, tf.opacityUnitMm)};
-}
 
 glm::dvec4 materialOf(const TransferTable& table, CompositingSpace /*space*/, double value) {
     return lookUp(table, value);
