@@ -20,7 +20,7 @@ vec4 classify(vec3 uvw, float lengthMm, Ray ray) {
     float value = sampleField(uvw);
     countFetches(kFetchesPerSample);
     vec4 material = materialOf(value);
-    float alpha = opacityOfDepth(material.a * lengthMm);
+    float alpha = opacityOfDepth(material.a * (lengthMm * tableMap.z));
     if (alpha == 0.0) {
         return vec4(0.0);
     }

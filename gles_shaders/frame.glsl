@@ -16,7 +16,8 @@ layout(std140) uniform FrameBlock {
     vec4 viewTangent;    // xy: tangent of the viewport's centre; zw: 1 / half extent
     vec4 viewport;       // xy: centre in pixels; z: 1 for shells, 0 for planar; w: termination
     vec4 tableMap;       // xy: table texel = (sampled - y) * x; w: last texel;
-                         // z: 1 / reference length of pre-classified texels, per mm
+                         // z: per mm, extinction where a table texel's alpha is 1, or
+                         // 1 / reference length of pre-classified texels
     vec4 skipMap;        // xyz: blocks per unit of uvw; w: free length per count, mm
     vec4 decode;         // xy: sampled value of an exact texel = dot(texel.rg, xy)
     vec4 gradientRow[3]; // rows: patient-space gradient from differences per voxel; w of 0: floor
@@ -24,6 +25,7 @@ layout(std140) uniform FrameBlock {
     vec4 material;       // ambient, diffuse, specular, shininess
     ivec4 counts;        // first plane, planes drawn, layers per plane, planes per outline
     ivec4 skipBlocks;    // xyz: number of blocks - 1
+    ivec4 jitter;        // xy: the viewport's corner in pixels; z: 1 where rays are jittered
 };
 #define firstPlane counts.x
 #define planeCount counts.y

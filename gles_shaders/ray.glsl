@@ -21,6 +21,12 @@ vec2 slabOffsets(float centre, float inverseSlope) {
     return vec2(min(a, b), max(a, b));
 }
 
+/// Mirrors jitterOf() in core/frame/lattice.cpp: interleaved gradient noise in integers, [-1/2, 1/2).
+float jitterOf(uvec2 pixel) {
+    uint noise = ((pixel.x * 288237660u + pixel.y * 25070368u) >> 8) * 13564u;
+    return float(noise >> 8) * (1.0 / 16777216.0) - 0.5;
+}
+
 Ray rayOfFragment(vec2 fragCoord) {
     precise vec2 p = fragCoord - viewport.xy;
     precise vec2 t = tangent.xy + tangent.zw * p;
@@ -49,6 +55,11 @@ Ray rayOfFragment(vec2 fragCoord) {
         step = perLength * direction0.w;
         layerLengthMm = direction0.w * directionY.w;
         nearOffset = (centreY.w * lengthPerDepth - sphere.w) * directionX.w;
+    }
+    if (jitter.z != 0) {
+        precise float moved = jitterOf(uvec2(ivec2(fragCoord) - jitter.xy));
+        centre += moved * step;
+        nearOffset -= moved;
     }
     ray.centre = centre;
     ray.step = step;

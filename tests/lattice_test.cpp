@@ -1,5 +1,6 @@
 #include "core/frame/lattice.h"
 
+#include <array>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -24,8 +25,11 @@ RealVec3 sampleByIntersection(const FrameScene& scene, glm::dvec2 fragCoord, int
     const RealVec3 centre(viewFromModel *
                           RealVec4(RealVec3(scene.geometry.boundingSphere().centreMm), 1.0L));
     const Real viewUnitsPerMm = glm::length(RealVec3(viewFromModel[0]));
-    const Real offset =
-        (index + 0.5L - scene.lattice.total / 2.0L) * scene.lattice.spacingMm * viewUnitsPerMm;
+    const glm::ivec2 corner(scene.viewport.x, scene.viewport.y);
+    const double jitter =
+        scene.lattice.jittered ? jitterOf(glm::ivec2(glm::floor(fragCoord)) - corner) : 0.0;
+    const Real offset = (index + 0.5L - scene.lattice.total / 2.0L + jitter) *
+                        scene.lattice.spacingMm * viewUnitsPerMm;
     const RealVec3 perDepth(RealVec3(glm::dvec3(scene.tangentAt(fragCoord), -1.0)));
     const RealVec3 place = scene.lattice.kind == LatticeKind::Planar
                                ? perDepth * (offset - centre.z)
@@ -132,6 +136,39 @@ TEST(Lattice, CoversTheSphereWithTheFewestLayers) {
         EXPECT_GE(layers * spacing, 2.0 * radius * (1.0 - 1e-11));
         EXPECT_LT((layers - 1) * spacing, 2.0 * radius);
     }
+}
+
+// What interleaved gradient noise is for: evenly spread over the layer, and so already among any
+// few neighbours.
+TEST(Lattice, JitterSpreadsNeighboursEvenlyOverTheLayer) {
+    std::array<int, 16> bins{};
+    double worstMean = 0.0;
+    double leastSpread = 1.0;
+    for (int y = 0; y < 256; ++y) {
+        for (int x = 0; x < 256; ++x) {
+            const double offset = jitterOf({x, y});
+            ASSERT_GE(offset, -0.5);
+            ASSERT_LT(offset, 0.5);
+            ++bins[static_cast<std::size_t>((offset + 0.5) * 16.0)];
+            double sum = 0.0, low = 1.0, high = -1.0;
+            for (int k = 0; k < 9; ++k) {
+                const double near = jitterOf({x + k % 3, y + k / 3});
+                sum += near / 9.0;
+                low = std::min(low, near);
+                high = std::max(high, near);
+            }
+            worstMean = std::max(worstMean, std::abs(sum));
+            leastSpread = std::min(leastSpread, high - low);
+        }
+    }
+    for (const int count : bins) {
+        EXPECT_NEAR(count, 256 * 256 / 16, 256 * 256 / 16 / 20);
+    }
+    // Nine places a ninth apart: their mean is off by at most half of that, and by as much again
+    // since rows advance by 0.309 and not by a third, which moves the third row by 0.048 of the
+    // 0.056 that half a place is. White noise has means of 0.3 and spreads of 0.4.
+    EXPECT_LT(worstMean, 1.0 / 9.0);
+    EXPECT_GT(leastSpread, 8.0 / 9.0 - 1.0 / 9.0);
 }
 
 TEST(Lattice, TheViewportsPlaceMovesNothing) {

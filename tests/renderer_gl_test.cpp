@@ -31,9 +31,9 @@ double chordMm(const Scene& scene, const View& view, glm::dvec2 fragCoord) {
 } // namespace
 
 // One material of a constant colour: alpha = 1 - exp(-sigma L), colour = c alpha, L the ray's
-// length in the box, for any segment form and lattice. Only rounding is left: of every plane's
-// blend, of float32 (2^-16 of sigma L: the box's ends are found to 2^-22 of their terms, about 40
-// layers), and where a ray grazes the box.
+// length in the box, for any segment form and lattice, jittered or not. Only rounding is left: of
+// every plane's blend, of float32 (2^-16 of sigma L: the box's ends are found to 2^-22 of their
+// terms, about 40 layers), and where a ray grazes the box.
 TEST_F(RendererTest, ConstantVolumeHasTheClosedFormsOpacity) {
     const double sigma = 0.0625; // exact in the table's fp16
     const glm::dvec3 color(1.0, 0.5, 0.25);
@@ -46,6 +46,7 @@ TEST_F(RendererTest, ConstantVolumeHasTheClosedFormsOpacity) {
                 Settings settings = segments(segment.layersPerPlane, segment.form);
                 settings.target = target;
                 settings.lattice = lattice;
+                settings.jitter = segment.layersPerPlane % 2 == 1;
                 const FramePlan plan = decide(scene, settings);
                 const Picture picture = draw(scene, plan, view, kSize);
                 double worst = 0.0;
@@ -142,6 +143,7 @@ TEST_F(RendererTest, EveryPixelMatchesTheFloat64Reference) {
             const Scene scene = makeScene(volume, look, {}, c.exact);
             Settings settings = segments(random.oneOf({8, kAll}), SegmentForm::Loop);
             settings.lattice = lattice;
+            settings.jitter = random.chance(0.5);
             settings.classification = c.classification;
             settings.shaded = c.shaded;
             const FramePlan plan = decide(scene, settings);
@@ -160,6 +162,7 @@ TEST_F(RendererTest, RatioChangesNothingBeyondRounding) {
     for (const LatticeKind lattice : {LatticeKind::Planar, LatticeKind::Shells}) {
         const auto drawn = [&](Settings settings, FramePlan& plan) {
             settings.lattice = lattice;
+            settings.jitter = lattice == LatticeKind::Shells;
             plan = decide(scene, settings);
             return draw(scene, plan, view, kSize);
         };

@@ -118,10 +118,16 @@ TEST(TransferTable, FaintStaysVisibleAndDenseStaysFinite) {
     const TransferFunction faint = tfOf({{.value = 0.0, .opacity = 0.0},
                                          {.value = 1.0, .opacity = 1e-12},
                                          {.value = 2.0, .opacity = 0.0}});
-    EXPECT_EQ(makeTable(faint, 0.0, 2.0, true, kDisplay).texels[1].w, 0x1p-24F);
+    EXPECT_NEAR(lookUp(makeTable(faint, 0.0, 2.0, true, kDisplay), 1.0).w, 1e-12, 1e-12 * kHalfUlp);
+    const TransferFunction wide = tfOf({{.value = 0.0, .opacity = 1e-14},
+                                        {.value = 1.0, .opacity = 0.5},
+                                        {.value = 2.0, .opacity = 0.0}});
+    EXPECT_EQ(makeTable(wide, 0.0, 2.0, true, kDisplay).texels[0].w, 0x1p-24F);
     const TransferFunction dense =
-        tfOf({{.value = 0.0, .opacity = 0.0}, {.value = 1.0, .opacity = 1.0}}, 1e-5);
-    EXPECT_EQ(makeTable(dense, 0.0, 1.0, true, kDisplay).texels[1].w, 65504.0F);
+        tfOf({{.value = 0.0, .opacity = 0.0}, {.value = 1.0, .opacity = 1.0}}, 1e-6);
+    const double densest = 24.0 * std::log(2.0) / 1e-6;
+    EXPECT_NEAR(lookUp(makeTable(dense, 0.0, 1.0, true, kDisplay), 1.0).w, densest,
+                densest * kHalfUlp);
 }
 
 TEST(TransferTable, AnIsolatedSpikeBetweenTexelsGoesToTheNearer) {
@@ -134,7 +140,7 @@ TEST(TransferTable, AnIsolatedSpikeBetweenTexelsGoesToTheNearer) {
               {.value = 100.0, .color = glm::dvec3(0.0), .opacity = 0.0}});
     const TransferTable table = makeTable(spike, 0.0, 100.0, true, kDisplay);
     ASSERT_EQ(table.texels.size(), 101U);
-    EXPECT_NEAR(table.texels[50].w, std::log(2.0), 1e-3);
+    EXPECT_NEAR(lookUp(table, 50.0).w, std::log(2.0), 1e-3);
     EXPECT_EQ(table.texels[50].x, 1.0F);
     for (std::size_t k = 0; k < table.texels.size(); ++k) {
         EXPECT_TRUE(k == 50 || table.texels[k].w == 0.0F) << k;
@@ -175,11 +181,12 @@ TEST(TransferTable, FollowsTheTfAtEveryTexel) {
         for (std::size_t k = 0; k < table.texels.size(); ++k) {
             const float alpha = table.texels[k].w;
             RC_ASSERT(roundedToHalf(alpha) == alpha);
+            const double extinction = static_cast<double>(alpha) * table.extinctionPerMm;
             const TransferSample sample = evaluate(tf, valueOf(table, k));
-            const auto exact = static_cast<float>(extinctionPerMm(sample.opacity, 1.0));
+            const double exact = extinctionPerMm(sample.opacity, 1.0);
             // Peaks between texels may raise a texel; nothing ever lowers one, to zero least of
             // all.
-            RC_ASSERT(alpha >= roundedToHalf(exact) * (1.0F - 1e-3F));
+            RC_ASSERT(extinction >= exact * (1.0 - kHalfUlp));
             RC_ASSERT(sample.opacity == 0.0 || alpha > 0.0F);
         }
     }));

@@ -65,7 +65,8 @@ FrameBlock makeFrameBlock(const RayFrame& f, const Frustum& frustum, const Scene
     const TableAxis axis = tableAxis(scene.texels(), scene.table());
     const ClassifiedTexels* classified = scene.classified();
     block.tableMap = packed({axis.texelsPerSampled, axis.firstSampled,
-                             classified != nullptr ? 1.0 / classified->referenceLengthMm : 0.0},
+                             classified != nullptr ? 1.0 / classified->referenceLengthMm
+                                                   : scene.table().extinctionPerMm},
                             axis.lastTexel);
     block.decode = decodeWeights(scene.texels().format);
     if (scene.cloud() != nullptr) {
@@ -75,6 +76,7 @@ FrameBlock makeFrameBlock(const RayFrame& f, const Frustum& frustum, const Scene
         fillShading(block, *scene.look().shading, scene.geometry(), scene.texels().valueScale);
     }
     block.counts.z = plan.layersPerPlane;
+    block.jitter = {glm::ivec2(f.viewportCorner), f.lattice.jittered ? 1 : 0, 0};
     return block;
 }
 

@@ -26,8 +26,9 @@ struct FrameBlock {
     glm::vec4 material;
     glm::ivec4 counts;
     glm::ivec4 skipBlocks;
+    glm::ivec4 jitter;
 };
-static_assert(sizeof(FrameBlock) == 16 * 22);
+static_assert(sizeof(FrameBlock) == 16 * 23);
 
 class Scene;
 

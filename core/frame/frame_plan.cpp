@@ -80,9 +80,9 @@ struct Planner {
     void chooseLattice() {
         const int total = totalLayers(settings, facts);
         const double spacing = settings.totalLayers
-                                   ? 2.0 * facts.sphere.radiusMm / total
+                                   ? 2.0 * facts.sphere.radiusMm / *settings.totalLayers
                                    : settings.layerSpacingVoxels * facts.smallestVoxelEdgeMm;
-        plan.lattice = {settings.lattice, total, spacing};
+        plan.lattice = {settings.lattice, total, spacing, settings.jitter};
         because("layers " + std::to_string(total),
                 "one every " + number(spacing) + " mm (" +
                     number(spacing / facts.smallestVoxelEdgeMm) +
@@ -92,6 +92,10 @@ struct Planner {
                 settings.lattice == LatticeKind::Planar
                     ? "layers of equal view depth, as in the core paper"
                     : "layers of equal distance from the eye: of one length at any field of view");
+        if (settings.jitter) {
+            because("jitter",
+                    "each ray's layers are moved by up to half a layer: grain, not bands");
+        }
     }
 
     SegmentForm formFor(int layersPerPlane) const {
@@ -233,8 +237,9 @@ std::string name(const Ratio& ratio) {
 }
 
 int totalLayers(const Settings& settings, const SceneFacts& facts) {
-    return settings.totalLayers.value_or(layersToCover(
+    const int covering = settings.totalLayers.value_or(layersToCover(
         facts.sphere.radiusMm, settings.layerSpacingVoxels * facts.smallestVoxelEdgeMm));
+    return covering + (settings.jitter ? 1 : 0); // moved by half a layer, they still cover
 }
 
 std::vector<Ratio> ratioCandidates(const Settings& settings, const SceneFacts& facts) {

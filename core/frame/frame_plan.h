@@ -23,6 +23,7 @@ struct Settings {
     Classification classification = Classification::Post;
     std::optional<SkipStructure> skip;
     LatticeKind lattice = LatticeKind::Planar;
+    bool jitter = false;             // moves every ray's layers by up to half a layer
     double layerSpacingVoxels = 1.0; // of the smallest voxel edge
     std::optional<int> totalLayers;  // instead of the spacing
     std::optional<int> planes;       // at most one of planes and layersPerPlane
@@ -90,7 +91,7 @@ struct FramePlan {
 };
 
 /// Total layers that the settings ask for: the given number or enough for the sphere at the
-/// spacing.
+/// spacing, and one more where jitter moves them.
 int totalLayers(const Settings& settings, const SceneFacts& facts);
 
 /// Ratios worth measuring for `auto`, from ray casting to slicing.

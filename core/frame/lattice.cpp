@@ -35,6 +35,14 @@ const char* name(LatticeKind kind) {
     return kind == LatticeKind::Planar ? "planar" : "shells";
 }
 
+double jitterOf(glm::ivec2 pixel) {
+    // 0.06711056 and 0.00583715 in units of 2^-32; then 52.98 times the upper 24 bits, modulo 1.
+    const std::uint32_t sum =
+        std::uint32_t(pixel.x) * 288237660U + std::uint32_t(pixel.y) * 25070368U;
+    const std::uint32_t noise = (sum >> 8) * 13564U;
+    return std::ldexp(static_cast<double>(noise >> 8), -24) - 0.5;
+}
+
 int layersToCover(double radiusMm, double spacingMm) {
     // The relative slack keeps 2R/s = 444 from becoming 445 by rounding.
     const double layers = std::ceil(2.0 * radiusMm / spacingMm * (1.0 - 1e-12));
@@ -57,6 +65,7 @@ RayFrame makeRayFrame(const View& view, const Viewport& viewport, const VolumeGe
     frame.nearDepth = view.nearDepth;
     frame.sphereCentre = {centreInView.x, centreInView.y, -centreInView.z};
     frame.sphereDistance = glm::length(centreInView);
+    frame.viewportCorner = {viewport.x, viewport.y};
     frame.viewportCentre = {viewport.x + viewport.width / 2.0, viewport.y + viewport.height / 2.0};
     const Frustum& f = view.frustum;
     frame.tangent0 = {(f.left + f.right) / 2.0, (f.bottom + f.top) / 2.0};
@@ -102,6 +111,11 @@ LatticeRay rayAt(const RayFrame& frame, glm::dvec2 fragCoord) {
         ray.step = perLength * frame.spacing;
         ray.layerLengthMm = frame.spacing * frame.mmPerViewUnit;
         nearOffset = (frame.nearDepth * lengthPerDepth - frame.sphereDistance) / frame.spacing;
+    }
+    if (frame.lattice.jittered) {
+        const double jitter = jitterOf(glm::ivec2(glm::floor(fragCoord - frame.viewportCorner)));
+        ray.centre += jitter * ray.step;
+        nearOffset -= jitter;
     }
     const glm::dvec2 box = boxOffsets(ray.centre, ray.step);
     ray.entry = std::max(box.x, nearOffset);

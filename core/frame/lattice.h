@@ -20,6 +20,7 @@ struct Lattice {
     LatticeKind kind = LatticeKind::Planar;
     int total = 0;
     double spacingMm = 0.0;
+    bool jittered = false; // each ray's layers are moved by jitterOf() its pixel
 
     bool operator==(const Lattice&) const = default;
 };
@@ -32,15 +33,23 @@ int layersToCover(double radiusMm, double spacingMm);
 /// of the shaders' uniforms and of the float64 references. With p = fragCoord - viewportCentre:
 /// centre(p) = centre0 + centreX p.x + centreY p.y is where the ray crosses the depth of the
 /// sphere's centre, direction(p) likewise its change per unit of depth, both in uvw.
+/// Offset of a ray's lattice in layers, in [-1/2, 1/2): interleaved gradient noise, in integers so
+/// that every device and the references agree to the last bit. Neighbouring pixels differ much, 3x3
+/// blocks hold about every ninth: what banding a coarse lattice would show becomes fine grain.
+/// `pixel`: counted from the viewport's lower left. Source: Jimenez 2014, "Next Generation Post
+/// Processing in Call of Duty: Advanced Warfare".
+double jitterOf(glm::ivec2 pixel);
+
 struct RayFrame {
     glm::dvec3 centre0, centreX, centreY;
     glm::dvec3 direction0, directionX, directionY;
     glm::dvec2 tangent0, tangentPerPixel; // (x, y)/depth of the ray
     glm::dvec2 viewportCentre;
-    glm::dvec3 sphereCentre; // (x, y, depth) in view space
-    double sphereDistance;   // from the eye
-    double radius;           // of the sphere, view units
-    double spacing;          // of the layers, view units
+    glm::dvec2 viewportCorner; // lower left
+    glm::dvec3 sphereCentre;   // (x, y, depth) in view space
+    double sphereDistance;     // from the eye
+    double radius;             // of the sphere, view units
+    double spacing;            // of the layers, view units
     double nearDepth;
     double mmPerViewUnit;
     Lattice lattice;

@@ -24,6 +24,11 @@ struct Circle {
     double radius = 0.0;
 };
 
+/// How far jitter may move a layer, view units.
+double jitterReach(const RayFrame& frame) {
+    return frame.lattice.jittered ? frame.spacing / 2.0 : 0.0;
+}
+
 /// Depths or distances, after the lattice's kind, that plane `p` covers.
 struct Slab {
     double front;
@@ -38,8 +43,8 @@ Slab slabOf(const RayFrame& frame, int plane, int layersPerPlane) {
     const double half = frame.lattice.total / 2.0;
     const double first = static_cast<double>(plane) * layersPerPlane;
     const double last = std::min(first + layersPerPlane, static_cast<double>(frame.lattice.total));
-    return {latticeOrigin(frame) + (first - half) * frame.spacing,
-            latticeOrigin(frame) + (last - half) * frame.spacing};
+    return {latticeOrigin(frame) + (first - half) * frame.spacing - jitterReach(frame),
+            latticeOrigin(frame) + (last - half) * frame.spacing + jitterReach(frame)};
 }
 
 Outline viewportOutline(const Frustum& f) {
@@ -294,7 +299,8 @@ ProxyStack tightStack(const RayFrame& frame, const Frustum& frustum, const glm::
             return static_cast<int>(
                 std::clamp(std::floor(layer / layersPerPlane), 0.0, planes - 1.0));
         };
-        for (int p = planeAt(seen.front); p <= planeAt(seen.back); ++p) {
+        const int last = planeAt(seen.back + jitterReach(frame));
+        for (int p = planeAt(seen.front - jitterReach(frame)); p <= last; ++p) {
             rectangles[p].include(low, high);
         }
     }

@@ -87,7 +87,8 @@ SceneFacts Scene::facts() const {
             static_cast<double>(cloud_->occupiedBlocks) / (blocks.x * blocks.y * blocks.z);
     }
     for (const glm::vec4& texel : table_.texels) {
-        facts.maxExtinctionPerMm = std::max(facts.maxExtinctionPerMm, static_cast<double>(texel.a));
+        facts.maxExtinctionPerMm = std::max(facts.maxExtinctionPerMm,
+                                            static_cast<double>(texel.a) * table_.extinctionPerMm);
     }
     facts.anythingVisible =
         facts.maxExtinctionPerMm > 0.0 && (!cloud_ || cloud_->occupiedBlocks > 0);

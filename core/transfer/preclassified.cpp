@@ -16,7 +16,7 @@ class LayerTable {
 public:
     LayerTable(const TransferTable& table, const Texels& texels, double referenceLengthMm)
         : table_(table.texels), last_(static_cast<float>(table.texels.size() - 1)),
-          referenceLengthMm_(static_cast<float>(referenceLengthMm)) {
+          referenceLength_(static_cast<float>(referenceLengthMm * table.extinctionPerMm)) {
         const double texelsPerValue = double{last_} / (table.lastValue - table.firstValue);
         scale_ = texels.valueScale * texelsPerValue;
         bias_ = (texels.valueBias - table.firstValue) * texelsPerValue;
@@ -29,15 +29,15 @@ public:
         const auto index = std::min(static_cast<std::size_t>(position), table_.size() - 2);
         glm::vec4 sample =
             glm::mix(table_[index], table_[index + 1], position - static_cast<float>(index));
-        sample.w = 1.0F - std::exp(-sample.w * referenceLengthMm_);
+        sample.w = 1.0F - std::exp(-sample.w * referenceLength_);
         return sample;
     }
 
 private:
     const std::vector<glm::vec4>& table_;
     float last_;
-    float referenceLengthMm_;
-    double scale_; // table position = scale * sampled + bias
+    float referenceLength_; // in units of 1 / the table's extinction
+    double scale_;          // table position = scale * sampled + bias
     double bias_;
 };
 

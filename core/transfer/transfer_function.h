@@ -52,26 +52,33 @@ glm::dvec3 linearFromSrgb(glm::dvec3 encoded);
 glm::dvec3 srgbFromLinear(glm::dvec3 linear);
 
 /// The TF as the GPU filters it: texel k at value firstValue + k * (lastValue - firstValue) / (size
-/// - 1); rgb in the compositing space (not premultiplied), alpha = extinction in 1/mm.
+/// - 1); rgb in the compositing space (not premultiplied), alpha = extinction in units of
+/// `extinctionPerMm`.
 struct TransferTable {
     double firstValue = 0.0;
     double lastValue = 1.0;
     std::vector<glm::vec4> texels;
+    double extinctionPerMm = 1.0; // where alpha is 1
 };
+
+/// Power of two in 1/mm in units of which the largest extinction of a TF is about 2^15: fp16 then
+/// keeps 11 bits of it and of what is up to nine decades fainter, whatever the unit of length.
+double extinctionUnitPerMm(const TransferFunction& tf);
 
 /// Spans the part of [dataMin, dataMax] in which the TF varies, one texel per integer value where
 /// that fits `maxSize` and the data are integers (then every knot at an integer is exact), else
 /// `maxSize` texels; two equal ones where the TF is constant over the data.
-/// Values are rounded to fp16, as the texture holds them; a visible texel keeps at least the
-/// smallest half. A texel is exactly zero in alpha where the TF is, with one exception: of a peak
-/// between two texels, higher than both, the nearer texel takes the whole, so that nothing visible
-/// is lost for being narrow. A step becomes a ramp from one texel to the next; a gap narrower than
-/// a texel is filled.
-/// Tested by: transfer_table_test.cpp
+/// Values are rounded to fp16, as the texture holds them, so extinction is off by 2^-12 of itself
+/// at most, or twelve decades below the largest by half of the smallest half; a visible texel keeps
+/// at least the smallest half. A texel is exactly zero in alpha where the TF is, with one
+/// exception: of a peak between two texels, higher than both, the nearer texel takes the whole, so
+/// that nothing visible is lost for being narrow. A step becomes a ramp from one texel to the next;
+/// a gap narrower than a texel is filled. Tested by: transfer_table_test.cpp
 TransferTable makeTable(const TransferFunction& tf, double dataMin, double dataMax,
                         bool integerData, CompositingSpace space, int maxSize = 4096);
 
-/// Linear texture lookup of the table, as the shader does it, in float64.
+/// Linear texture lookup of the table, as the shader does it, in float64: colour, and extinction in
+/// 1/mm.
 glm::dvec4 lookUp(const TransferTable& table, double value);
 
 } // namespace slabcast

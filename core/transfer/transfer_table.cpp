@@ -51,20 +51,19 @@ std::optional<Span> spanFor(const TransferFunction& tf, double dataMin, double d
     return Span{low, lastKnot, maxSize};
 }
 
-/// A visible extinction stays visible and a large one finite.
+/// In the table's unit: a visible extinction stays visible.
 float halfExtinction(double extinction) {
-    if (extinction <= 0.0) {
-        return 0.0F;
-    }
-    const auto kept = static_cast<float>(std::min(extinction, double{kLargestHalf}));
-    return std::max(kSmallestHalf, roundedToHalf(kept));
+    return extinction <= 0.0
+               ? 0.0F
+               : std::max(kSmallestHalf, roundedToHalf(static_cast<float>(extinction)));
 }
 
-glm::vec4 texelOf(const TransferSample& sample, double opacityUnitMm, CompositingSpace space) {
+glm::vec4 texelOf(const TransferSample& sample, const TransferFunction& tf, double unitPerMm,
+                  CompositingSpace space) {
     const glm::vec3 color(space == CompositingSpace::Linear ? linearFromSrgb(sample.color)
                                                             : sample.color);
     return {roundedToHalf(color.x), roundedToHalf(color.y), roundedToHalf(color.z),
-            halfExtinction(extinctionPerMm(sample.opacity, opacityUnitMm))};
+            halfExtinction(extinctionPerMm(sample.opacity, tf.opacityUnitMm) / unitPerMm)};
 }
 
 /// Gives every peak that lies between two texels and above both to the nearer one. The first point
@@ -90,25 +89,35 @@ void keepNarrowPeaks(const TransferFunction& tf, const Span& span,
 
 } // namespace
 
+double extinctionUnitPerMm(const TransferFunction& tf) {
+    constexpr int kLargestExponent = 14; // 15 is the largest of fp16
+    double most = 0.0;
+    for (const TransferPoint& point : tf.points) {
+        most = std::max(most, extinctionPerMm(point.opacity, tf.opacityUnitMm));
+    }
+    return most > 0.0 ? std::ldexp(1.0, std::ilogb(most) - kLargestExponent) : 1.0;
+}
+
 TransferTable makeTable(const TransferFunction& tf, double dataMin, double dataMax,
                         bool integerData, CompositingSpace space, int maxSize) {
     SLABCAST_EXPECTS(!tf.points.empty(), tf.points.size());
     SLABCAST_EXPECTS(dataMin <= dataMax, dataMax - dataMin);
     SLABCAST_EXPECTS(maxSize >= 4, maxSize);
+    const double unitPerMm = extinctionUnitPerMm(tf);
     const auto toTexel = [&](const TransferSample& sample) {
-        return texelOf(sample, tf.opacityUnitMm, space);
+        return texelOf(sample, tf, unitPerMm, space);
     };
     const std::optional<Span> span = spanFor(tf, dataMin, dataMax, integerData, maxSize);
     if (!span) {
         const double width = std::max(1.0, std::abs(dataMin) * 1e-3); // any that is not zero
-        return {dataMin, dataMin + width, {2, toTexel(evaluate(tf, dataMin))}};
+        return {dataMin, dataMin + width, {2, toTexel(evaluate(tf, dataMin))}, unitPerMm};
     }
     std::vector<TransferSample> samples;
     for (int texel = 0; texel < span->size; ++texel) {
         samples.push_back(evaluate(tf, span->valueAt(texel)));
     }
     keepNarrowPeaks(tf, *span, samples);
-    TransferTable table{span->first, span->last, {}};
+    TransferTable table{span->first, span->last, {}, unitPerMm};
     std::transform(samples.begin(), samples.end(), std::back_inserter(table.texels), toTexel);
     return table;
 }
@@ -122,7 +131,8 @@ glm::dvec4 lookUp(const TransferTable& table, double value) {
     const double below = std::min(std::floor(position), last - 1.0);
     const auto index = static_cast<std::size_t>(below);
     return glm::mix(glm::dvec4(table.texels[index]), glm::dvec4(table.texels[index + 1]),
-                    position - below);
+                    position - below) *
+           glm::dvec4(1.0, 1.0, 1.0, table.extinctionPerMm);
 }
 
 } // namespace slabcast

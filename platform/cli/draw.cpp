@@ -192,6 +192,7 @@ nlohmann::json toJson(const FramePlan& plan) {
             {"layers", plan.lattice.total},
             {"layerSpacingMm", plan.lattice.spacingMm},
             {"lattice", name(plan.lattice.kind)},
+            {"jitter", plan.lattice.jittered},
             {"variant", name(plan.variant)},
             {"tighten", plan.tighten},
             {"termination", plan.variant.terminates ? nlohmann::json(plan.terminationAlpha)

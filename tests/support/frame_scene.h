@@ -123,9 +123,12 @@ inline FrameScene randomScene(Dice& dice, int totalLayers) {
                             std::max(0.0, -place.z + dice.uniform(-1.0, 1.0) * radius)};
     scene.view.nearDepth = nears[dice.below(4)];
     scene.viewport = {dice.below(200), dice.below(200), 1 + dice.below(2000), 1 + dice.below(2000)};
+    const bool jittered = totalLayers > 1 && dice.chance(0.3);
+    const int covering = totalLayers - (jittered ? 1 : 0);
     scene.lattice = {dice.chance(0.5) ? LatticeKind::Planar : LatticeKind::Shells, totalLayers,
-                     2.0 * sphere.radiusMm / totalLayers *
-                         (dice.chance(0.5) ? 1.0 : dice.uniform(1.0, 1.5))};
+                     2.0 * sphere.radiusMm / covering *
+                         (dice.chance(0.5) ? 1.0 : dice.uniform(1.0, 1.5)),
+                     jittered};
     return scene;
 }
 
