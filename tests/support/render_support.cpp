@@ -172,4 +172,38 @@ Picture RenderTest::draw(const Scene& scene, const Settings& settings, const Vie
     return draw(scene, decide(scene, settings), view, size);
 }
 
+void expectMatchesReference(const Picture& picture, const Scene& scene, const FramePlan& plan,
+                            const View& view, double meanLimit) {
+    const ReferencePicture reference(scene, plan, view, {0, 0, picture.size.x, picture.size.y});
+    const double blending = blendingBound(plan);
+    const double pixels = picture.size.x * picture.size.y;
+    double sum = 0.0;
+    double worstExcess = -1.0;
+    std::string worst;
+    int grazing = 0;
+    for (int y = 0; y < picture.size.y; ++y) {
+        for (int x = 0; x < picture.size.x; ++x) {
+            const PixelReference expected = reference.at(glm::dvec2(x, y) + 0.5);
+            const glm::dvec4 off = glm::abs(picture.at({x, y}) - expected.color);
+            const double largest = std::max({off.x, off.y, off.z, off.w});
+            if (expected.atEdge) {
+                ++grazing;
+                continue;
+            }
+            sum += (off.x + off.y + off.z + off.w) / 4.0;
+            const double excess = largest - (expected.bound + blending);
+            if (!(excess <= worstExcess)) {
+                worstExcess = excess;
+                worst = "pixel " + std::to_string(x) + "," + std::to_string(y) + ": off by " +
+                        std::to_string(largest) + ", bound " + std::to_string(expected.bound) +
+                        " + " + std::to_string(blending) + ", alpha " +
+                        std::to_string(expected.color.a);
+            }
+        }
+    }
+    EXPECT_LE(worstExcess, 0.0) << worst;
+    EXPECT_LE(sum / pixels, meanLimit + blending / 2.0) << worst;
+    EXPECT_LE(grazing, 0.005 * pixels);
+}
+
 } // namespace slabcast::test

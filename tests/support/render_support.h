@@ -10,6 +10,7 @@
 #include "core/frame/renderer.h"
 #include "core/gl/color_targets.h"
 #include "core/volume/texel_format.h"
+#include "perf/stability/reference_picture.h"
 #include "tests/support/gl_fixture.h"
 
 namespace slabcast::test {
@@ -102,51 +103,10 @@ protected:
     Picture draw(const Scene& scene, const Settings& settings, const View& view, glm::ivec2 size);
 };
 
-/// A pixel in float64 and what a device may differ by, from the definitions alone.
-struct PixelReference {
-    glm::dvec4 color{0.0}; // premultiplied
-    double bound = 0.0;    // classification and arithmetic; blending comes on top
-    bool atEdge = false;   // the ray grazes the box: whether it meets it is a matter of rounding
-};
-
-/// Walks one ray front to back over the plan's lattice. Beside the sum it carries a bound: a layer
-/// whose premultiplied colour may be off by p and whose opacity by a moves the pixel by at most T
-/// (p + a), T being the largest transmittance in front of it. p and a are the spread of the
-/// classification over what the field, the table and the length may be: the exact ones, give or
-/// take the texture unit's filter (1/256 of the cell's range per axis and one step of the format),
-/// float32 positions (2^-22 of the terms that they are summed from) and the table's own weights.
-class ReferencePicture {
-public:
-    ReferencePicture(const Scene& scene, const FramePlan& plan, const View& view,
-                     const Viewport& viewport);
-    PixelReference at(glm::dvec2 fragCoord) const;
-
-private:
-    struct Ray;
-    struct Layer;
-    struct Field {
-        double value, error;
-    };
-    Ray rayOf(glm::dvec2 fragCoord) const;
-    Field fieldAt(glm::dvec3 uvw, glm::dvec3 uvwError) const;
-    Layer postClassified(glm::dvec3 uvw, const Ray& ray, glm::dvec3 lengths) const;
-    Layer preClassified(glm::dvec3 uvw, const Ray& ray, glm::dvec3 lengths) const;
-    void shade(glm::dvec3& color, double& error, glm::dvec3 uvw, const Ray& ray) const;
-
-    const Scene& scene_;
-    FramePlan plan_;
-    RayFrame frame_;
-    std::vector<double> values_; // of all voxels
-};
-
 /// Every pixel within its bound and the blending's; at most 0.5 % of the pixels may graze the box.
 /// The mean difference may be `meanLimit` and half of the blending's bound: cutting digits off errs
 /// by half a step on average.
 void expectMatchesReference(const Picture& picture, const Scene& scene, const FramePlan& plan,
                             const View& view, double meanLimit);
-
-/// What blending may add: every plane rounds once more. 8 bits round to the nearest step, half of
-/// 1/255; fp16's steps are 2^-11 at most below 1, and GL lets a device take either neighbour.
-double blendingBound(const FramePlan& plan);
 
 } // namespace slabcast::test

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/frame/renderer.h"
+#include "core/gl/color_targets.h"
+#include "core/volume/texel_format.h"
+#include "perf/stability/case.h"
+
+namespace slabcast::stability {
+
+/// A way to draw: the same samples, dealt out to planes differently, into a target.
+struct Method {
+    const char* name; // "slicing, rgba8"
+    int layersPerPlane;
+    TargetFormat target;
+};
+
+/// Slicing, hybrid (16 layers per plane) and ray casting, into both targets.
+std::span<const Method> methods();
+
+/// More layers per plane than there are: one plane.
+inline constexpr int kAllLayers = 1 << 20;
+
+/// The method's settings: nothing skipped or left early, one voxel per layer, to be changed as a
+/// case needs.
+Settings settingsOf(const Method& method);
+
+View orbitView(const Scene& scene, const OrbitCamera& camera, double fovDegrees, glm::ivec2 size);
+
+struct Drawn {
+    FramePlan plan;
+    Picture picture;
+};
+
+/// What all cases draw with, and where they are written down. One GL context, current throughout.
+class Bench {
+public:
+    Bench(Renderer& renderer, const gl::Caps& caps, std::vector<TexelFormatTest> formats,
+          bool reduced)
+        : renderer_(renderer), caps_(caps), formats_(std::move(formats)), reduced_(reduced) {}
+
+    /// Fewer sizes, views and repetitions, for test runs. Bounds are never others.
+    bool reduced() const { return reduced_; }
+
+    /// Texel format as the renderer would choose it for this device.
+    Result<Scene> scene(const Volume& volume, const Look& look, const SkipOptions& skip = {},
+                        bool exact = false) const;
+    Result<FramePlan> plan(const Scene& scene, const Settings& settings) const;
+    /// Into a target of the plan's format, cleared to transparent black.
+    Result<Drawn> draw(const Scene& scene, const Settings& settings, const View& view,
+                       glm::ivec2 size);
+    Result<WorkCounters> countWork(const Scene& scene, const FramePlan& plan, const View& view,
+                                   glm::ivec2 size);
+
+    void record(Case measured) { cases_.push_back(std::move(measured)); }
+    /// A case that could not be measured: it fails, with the error as the reason.
+    void recordFailure(Case unmeasured, const Error& error);
+
+    const std::vector<Case>& cases() const { return cases_; }
+    const gl::Caps& caps() const { return caps_; }
+    Renderer& renderer() { return renderer_; }
+
+private:
+    Renderer& renderer_;
+    const gl::Caps& caps_;
+    std::vector<TexelFormatTest> formats_;
+    bool reduced_;
+    gl::ColorTargets target_;
+    std::vector<Case> cases_;
+};
+
+// Quantities that cases measure.
+
+/// Largest difference of any component, over the pixels that `counts` (all where it is empty).
+double largestDifference(const Picture& picture, std::span<const glm::dvec4> reference);
+
+/// The renderer against float64 evaluation of the very samples that it takes: worst share of the
+/// pixel's own bound (reference_picture.h: filter, float32 positions, table; and the blending's)
+/// that is used up. 1 is the bound. Pixels whose rays graze the box are left out.
+double shareOfPixelBound(const Scene& scene, const Drawn& drawn, const View& view);
+/// The reason that goes with it.
+extern const char* const kPixelBoundReason;
+
+/// Families of cases, each in a file of its own name.
+void stiffCases(Bench& bench);
+void extremeDataCases(Bench& bench);
+void extremeViewCases(Bench& bench);
+void extremePlanCases(Bench& bench);
+void inTimeCases(Bench& bench);
+void halfPrecisionCases(Bench& bench);
+void leftOutCases(Bench& bench);
+
+struct Family {
+    const char* name;
+    const char* title;
+    void (*run)(Bench& bench);
+};
+std::span<const Family> families();
+
+} // namespace slabcast::stability
