@@ -241,5 +241,25 @@ TEST(TransferTable, LookUpIsLinearBetweenTexels) {
     EXPECT_DOUBLE_EQ(lookUp(table, -99.0).z, 0.0);
 }
 
+TEST(TransferTable, APeakNextToAnEndStaysInside) {
+    // What an end texel holds is what all values beyond read.
+    const TransferPoint peaks[][3] = {
+        {{0.0, glm::dvec3(1.0), 0.0}, {100.7, glm::dvec3(1.0), 0.9}, {100.7, glm::dvec3(1.0), 0.0}},
+        {{0.0, glm::dvec3(1.0), 0.0}, {100.0, glm::dvec3(1.0), 0.9}, {100.0, glm::dvec3(1.0), 0.0}},
+        {{7.1, glm::dvec3(1.0), 0.0}, {7.3, glm::dvec3(1.0), 0.9}, {90.0, glm::dvec3(1.0), 0.0}},
+        {{7.1, glm::dvec3(1.0), 0.0}, {7.3, glm::dvec3(1.0), 0.9}, {7.4, glm::dvec3(1.0), 0.0}},
+    };
+    for (const auto& points : peaks) {
+        const TransferFunction tf{.points = {points, points + 3}};
+        for (const bool integers : {true, false}) {
+            const TransferTable table =
+                makeTable(tf, -50.0, 200.0, integers, CompositingSpace::Display, 512);
+            EXPECT_EQ(lookUp(table, -50.0).w, 0.0) << points[1].value << " " << integers;
+            EXPECT_EQ(lookUp(table, 200.0).w, 0.0) << points[1].value << " " << integers;
+            EXPECT_GT(lookUp(table, points[1].value - 0.01).w, 0.0) << integers;
+        }
+    }
+}
+
 } // namespace
 } // namespace slabcast

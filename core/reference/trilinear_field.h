@@ -25,15 +25,16 @@ public:
         const glm::ivec3 low(place);
         const glm::dvec3 f = place - glm::dvec3(low);
         const std::array<double, 8> corner = cornersOf(low);
-        const double front = glm::mix(glm::mix(corner[0], corner[1], f.x),
-                                      glm::mix(corner[2], corner[3], f.x), f.y);
-        const double back = glm::mix(glm::mix(corner[4], corner[5], f.x),
-                                     glm::mix(corner[6], corner[7], f.x), f.y);
+        const double front =
+            glm::mix(glm::mix(corner[0], corner[1], f.x), glm::mix(corner[2], corner[3], f.x), f.y);
+        const double back =
+            glm::mix(glm::mix(corner[4], corner[5], f.x), glm::mix(corner[6], corner[7], f.x), f.y);
         return glm::mix(front, back, f.z);
     }
 
     /// Data values around the cell between the voxels `cell` and `cell` + 1: x fastest, then y,
-    /// then z. Voxels beyond the edge take the edge's value, so that cell -1 is the outer half voxel.
+    /// then z. Voxels beyond the edge take the edge's value, so that cell -1 is the outer half
+    /// voxel.
     std::array<double, 8> cornersOf(glm::ivec3 cell) const {
         const glm::ivec3 low = glm::clamp(cell, glm::ivec3(0), dims_ - 1);
         const glm::ivec3 high = glm::clamp(cell + 1, glm::ivec3(0), dims_ - 1);

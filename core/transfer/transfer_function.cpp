@@ -102,4 +102,8 @@ glm::dvec3 srgbFromLinear(glm::dvec3 linear) {
     return {srgbFromLinear(linear.x), srgbFromLinear(linear.y), srgbFromLinear(linear.z)};
 }
 
+glm::dvec3 colorIn(CompositingSpace space, glm::dvec3 encoded) {
+    return space == CompositingSpace::Linear ? linearFromSrgb(encoded) : encoded;
+}
+
 } // namespace slabcast

@@ -50,15 +50,22 @@ enum class CompositingSpace : std::uint8_t { Display, Linear };
 const char* name(CompositingSpace space);
 glm::dvec3 linearFromSrgb(glm::dvec3 encoded);
 glm::dvec3 srgbFromLinear(glm::dvec3 linear);
+/// An encoded colour as it is composited.
+glm::dvec3 colorIn(CompositingSpace space, glm::dvec3 encoded);
 
-/// The TF as the GPU filters it: texel k at value firstValue + k * (lastValue - firstValue) / (size
-/// - 1); rgb in the compositing space (not premultiplied), alpha = extinction in units of
-/// `extinctionPerMm`.
+/// The TF as the GPU filters it: texels at even distances of value; rgb in the compositing space
+/// (not premultiplied), alpha = extinction in units of `extinctionPerMm`.
 struct TransferTable {
     double firstValue = 0.0;
     double lastValue = 1.0;
     std::vector<glm::vec4> texels;
     double extinctionPerMm = 1.0; // where alpha is 1
+
+    double valueAt(std::size_t texel) const {
+        const auto last = static_cast<double>(texels.size() - 1);
+        const auto k = static_cast<double>(texel);
+        return k == last ? lastValue : firstValue + k * (lastValue - firstValue) / last;
+    }
 };
 
 /// Power of two in 1/mm in units of which the largest extinction of a TF is about 2^15: fp16 then

@@ -15,9 +15,6 @@ struct Span {
     double last;
     int size;
 
-    double valueAt(int texel) const {
-        return texel == size - 1 ? last : first + texel * (last - first) / (size - 1);
-    }
     double positionOf(double value) const { return (value - first) * (size - 1) / (last - first); }
 };
 
@@ -37,8 +34,12 @@ std::optional<Span> spanFor(const TransferFunction& tf, double dataMin, double d
         return std::nullopt;
     }
     if (integerData) {
-        const double low = below ? std::ceil(firstKnot) - 1.0 : std::floor(first);
-        const double high = std::ceil(lastKnot);
+        double low = below ? std::ceil(firstKnot) - 1.0 : std::floor(first);
+        double high = std::ceil(lastKnot);
+        if (high - low < 2.0 && tf.points.size() > 2) { // room for a peak between the end texels
+            low -= 1.0;
+            high += 1.0;
+        }
         if (high - low < maxSize) {
             return Span{low, high, static_cast<int>(high - low) + 1};
         }
@@ -60,13 +61,13 @@ float halfExtinction(double extinction) {
 
 glm::vec4 texelOf(const TransferSample& sample, const TransferFunction& tf, double unitPerMm,
                   CompositingSpace space) {
-    const glm::vec3 color(space == CompositingSpace::Linear ? linearFromSrgb(sample.color)
-                                                            : sample.color);
+    const glm::vec3 color(colorIn(space, sample.color));
     return {roundedToHalf(color.x), roundedToHalf(color.y), roundedToHalf(color.z),
             halfExtinction(extinctionPerMm(sample.opacity, tf.opacityUnitMm) / unitPerMm)};
 }
 
-/// Gives every peak that lies between two texels and above both to the nearer one. The first point
+/// Gives every peak that lies between two texels and above both to the nearer one, but not to an
+/// end texel: that holds for all values beyond. The first point
 /// of a step belongs to the interval on its left: at its own value the second one holds.
 void keepNarrowPeaks(const TransferFunction& tf, const Span& span,
                      std::vector<TransferSample>& samples) {
@@ -80,7 +81,8 @@ void keepNarrowPeaks(const TransferFunction& tf, const Span& span,
         if (point.opacity <= std::max(plain[right - 1].opacity, plain[right].opacity)) {
             continue;
         }
-        TransferSample& nearest = samples[static_cast<std::size_t>(std::lround(position))];
+        TransferSample& nearest = samples[static_cast<std::size_t>(
+            std::clamp(std::lround(position), 1L, span.size - 2L))];
         if (point.opacity > nearest.opacity) {
             nearest = {point.color, point.opacity};
         }
@@ -112,13 +114,13 @@ TransferTable makeTable(const TransferFunction& tf, double dataMin, double dataM
         const double width = std::max(1.0, std::abs(dataMin) * 1e-3); // any that is not zero
         return {dataMin, dataMin + width, {2, toTexel(evaluate(tf, dataMin))}, unitPerMm};
     }
+    TransferTable table{span->first, span->last, std::vector<glm::vec4>(span->size), unitPerMm};
     std::vector<TransferSample> samples;
-    for (int texel = 0; texel < span->size; ++texel) {
-        samples.push_back(evaluate(tf, span->valueAt(texel)));
+    for (std::size_t texel = 0; texel < table.texels.size(); ++texel) {
+        samples.push_back(evaluate(tf, table.valueAt(texel)));
     }
     keepNarrowPeaks(tf, *span, samples);
-    TransferTable table{span->first, span->last, {}, unitPerMm};
-    std::transform(samples.begin(), samples.end(), std::back_inserter(table.texels), toTexel);
+    std::transform(samples.begin(), samples.end(), table.texels.begin(), toTexel);
     return table;
 }
 
