@@ -1,28 +1,31 @@
 // Post-classification: the interpolated value is looked up in the TF's table.
 #include FIELD_FILE
+#include "sample_middle.glsl"
 #include SHADE_FILE
 precision highp sampler2D;
 uniform sampler2D transferTable;
 
-/// Two fetches and a float32 interpolation: texture units may filter with 8-bit weights, and what
-/// is zero in both texels must be exactly zero between them.
-vec4 materialOf(float value) {
+/// Two fetches, interpolated here: texture units may filter with 8-bit weights, and what is zero in
+/// both texels must be exactly zero between them. Mediump: the table is fp16 itself, and rounding on
+/// the way stays below half an 8-bit step (`slabcast stability`, half precision).
+mediump vec4 materialOf(float value) {
     precise float at = clamp((value - tableMap.y) * tableMap.x, 0.0, tableMap.w);
     int texel = int(at);
-    vec4 low = texelFetch(transferTable, ivec2(texel, 0), 0);
-    vec4 high = texelFetch(transferTable, ivec2(min(texel + 1, int(tableMap.w)), 0), 0);
-    precise vec4 material = low + (high - low) * (at - float(texel));
+    mediump vec4 low = texelFetch(transferTable, ivec2(texel, 0), 0);
+    mediump vec4 high = texelFetch(transferTable, ivec2(min(texel + 1, int(tableMap.w)), 0), 0);
+    mediump vec4 rise = inMaterial(high - low);
+    precise mediump vec4 material = inMaterial(low + inMaterial(rise * (at - float(texel))));
     return material;
 }
 
-/// Premultiplied colour and opacity of `lengthMm` of what lies at uvw.
-vec4 classify(vec3 uvw, float lengthMm, Ray ray) {
+/// Premultiplied colour and opacity of layer i, whose sample lies at uvw.
+vec4 classify(vec3 uvw, Ray ray, int i) {
     float value = sampleField(uvw);
     countFetches(kFetchesPerSample);
-    vec4 material = materialOf(value);
-    float alpha = opacityOfDepth(material.a * (lengthMm * tableMap.z));
+    mediump vec4 material = materialOf(value);
+    float alpha = opacityOfDepth(material.a * (lengthInside(ray, i) * tableMap.z));
     if (alpha == 0.0) {
         return vec4(0.0);
     }
-    return vec4(shade(material.rgb, uvw, ray) * alpha, alpha);
+    return vec4(inMaterial(shade(material.rgb, uvw, ray) * alpha), alpha);
 }

@@ -22,7 +22,9 @@ float sampleField(vec3 uvw) {
                      voxelAt(ivec3(low.x, low.y, high.z)), voxelAt(ivec3(low.x, high.yz)));
     vec4 right = vec4(voxelAt(ivec3(high.x, low.yz)), voxelAt(ivec3(high.xy, low.z)),
                       voxelAt(ivec3(high.x, low.y, high.z)), voxelAt(high));
-    vec4 x = mix(left, right, f.x);
-    vec2 y = mix(x.xz, x.yw, f.y);
-    return mix(y.x, y.y, f.z);
+    // Not mix(), which may turn two equal values into a third.
+    precise vec4 x = left + (right - left) * f.x;
+    precise vec2 y = x.xz + (x.yw - x.xz) * f.y;
+    precise float z = y.x + (y.y - y.x) * f.z;
+    return z;
 }

@@ -13,11 +13,13 @@ layout(std140) uniform FrameBlock {
     vec4 directionY;     // w: mm per view unit
     vec4 tangent;        // xy: of the central ray; zw: per pixel
     vec4 sphere;         // xyz: the sphere's centre (x, y, depth); w: its distance
-    vec4 viewTangent;    // xy: tangent of the viewport's centre; zw: 1 / half extent
+    vec4 miss;           // at the sphere's depth, xy: from its centre to the central ray;
+                         // zw: per pixel
     vec4 viewport;       // xy: centre in pixels; z: 1 for shells, 0 for planar; w: termination
     vec4 tableMap;       // xy: table texel = (sampled - y) * x; w: last texel;
                          // z: per mm, extinction where a table texel's alpha is 1, or
                          // 1 / reference length of pre-classified texels
+    vec4 tableEnds[2];   // of a pre-integrated table: its first and last texel
     vec4 skipMap;        // xyz: blocks per unit of uvw; w: free length per count, mm
     vec4 decode;         // xy: sampled value of an exact texel = dot(texel.rg, xy)
     vec4 gradientRow[3]; // rows: patient-space gradient from differences per voxel; w of 0: floor
@@ -33,5 +35,5 @@ layout(std140) uniform FrameBlock {
 #define planesPerOutline counts.w
 
 layout(std140) uniform OutlineBlock {
-    vec4 outlines[MAX_OUTLINES]; // xy: centre, zw: half size, tangent space
+    vec4 outlines[MAX_OUTLINES]; // xy: centre, zw: half size, normalised device coordinates
 };

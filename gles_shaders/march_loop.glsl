@@ -10,12 +10,16 @@ vec4 march(Ray ray, ivec2 range) {
             i += stretch.layers;
             stretch = stretchAt(samplePosition(ray, i), ray);
         }
-        int stop = stretch.free ? i : min(i + stretch.layers, range.y);
+        if (stretch.free) {
+            break;
+        }
+        int stop = min(i + stretch.layers, range.y);
+        beginRun(ray, i);
         for (; i < stop && !terminated(sum.a); ++i) {
             countLayer();
-            sum = composited(sum, classify(samplePosition(ray, i), lengthInside(ray, i), ray));
+            sum = composited(sum, classify(samplePosition(ray, i), ray, i));
         }
-        if (stretch.free || terminated(sum.a)) {
+        if (terminated(sum.a)) {
             break;
         }
     }

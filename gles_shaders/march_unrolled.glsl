@@ -18,7 +18,8 @@ void compositeLayer(Ray ray, int i, int end, inout Walk walk) {
     }
     if (!walk.free) {
         countLayer();
-        walk.sum = composited(walk.sum, classify(uvw, lengthInside(ray, i), ray));
+        beginRun(ray, i);
+        walk.sum = composited(walk.sum, classify(uvw, ray, i));
     }
 }
 

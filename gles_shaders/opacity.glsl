@@ -5,16 +5,18 @@ const float kBelow = 1.0 - 1.0e-5;
 /// 1 - exp(-depth). Below 1/32 as a series, whose relative error stays below 1e-7 where the
 /// difference would lose its digits; exactly 0 at 0, so an invisible layer changes nothing.
 float opacityOfDepth(float depth) {
-    precise float series =
-        depth * (1.0 - depth * (0.5 - depth * (1.0 / 6.0 - depth * (1.0 / 24.0))));
-    precise float difference = 1.0 - exp(-depth);
-    return depth < 0.03125 ? series : difference;
+    precise float d = inOpacity(depth);
+    precise float s3 = inOpacity(1.0 / 6.0 - inOpacity(d * (1.0 / 24.0)));
+    precise float s2 = inOpacity(0.5 - inOpacity(d * s3));
+    precise float series = inOpacity(d * inOpacity(1.0 - inOpacity(d * s2)));
+    precise float difference = inOpacity(1.0 - inOpacity(exp(-d)));
+    return d < 0.03125 ? series : difference;
 }
 
 /// Front to back: what a layer adds to what is before it. Precise, as is all that decides a pixel:
 /// variants are different programs, and a compiler that fused one and not the other would make
 /// skipping change the last bit.
 vec4 composited(vec4 sum, vec4 layer) {
-    precise vec4 result = sum + (1.0 - sum.a) * layer;
+    precise vec4 result = inSum(sum + inSum(inSum(1.0 - sum.a) * layer));
     return result;
 }

@@ -9,7 +9,6 @@ void main() {
     int fromBack = planeCount - 1 - gl_InstanceID;
     plane = firstPlane + fromBack;
     vec4 outline = outlines[fromBack / planesPerOutline];
-    vec2 tangent = outline.xy + unitPolygon * outline.zw;
     // w = 1 and z = 0: near and far never clip a proxy polygon.
-    gl_Position = vec4((tangent - viewTangent.xy) * viewTangent.zw, 0.0, 1.0);
+    gl_Position = vec4(outline.xy + unitPolygon * outline.zw, 0.0, 1.0);
 }

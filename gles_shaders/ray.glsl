@@ -44,11 +44,12 @@ Ray rayOfFragment(vec2 fragCoord) {
         nearOffset = centreX.w;
     } else {
         // From the sphere's depth to its distance. The quotient is the difference
-        // sphere.w - depth * length without its cancellation; behind the eye there is none, and the
-        // quotient's divisor may vanish.
-        precise vec2 miss = sphere.z * t - sphere.xy;
+        // sphere.w - depth * length without its cancellation, nor that of depth * t - sphere.xy,
+        // which the host resolves; behind the eye there is none, and the quotient's divisor may
+        // vanish.
+        precise vec2 missed = miss.xy + miss.zw * p;
         precise float far =
-            dot(miss, sphere.z * t + sphere.xy) / (sphere.w + sphere.z * lengthPerDepth);
+            dot(missed, sphere.z * t + sphere.xy) / (sphere.w + sphere.z * lengthPerDepth);
         precise float toShell = sphere.z > 0.0 ? -far : sphere.w - sphere.z * lengthPerDepth;
         precise vec3 perLength = direction / lengthPerDepth;
         centre += perLength * toShell;
@@ -84,12 +85,6 @@ ivec2 layersOfPlane(Ray ray, int plane) {
     float begin = clamp(floor(ray.entry + centre0.w), low, high);
     float end = clamp(ceil(ray.exit + centre0.w), low, min(high, 2.0 * centre0.w));
     return ivec2(int(begin), int(end));
-}
-
-/// Sample of layer i: a pure function of ray and index, so that no way of walking moves it.
-vec3 samplePosition(Ray ray, int i) {
-    precise vec3 position = ray.centre + (float(i) - centre0.w + 0.5) * ray.step;
-    return position;
 }
 
 /// Length of layer i inside the box, mm.

@@ -4,10 +4,11 @@
 flat in int plane;
 
 #include "ray.glsl"
+#include MEDIUM_FILE
 #include "opacity.glsl"
 #include COUNT_FILE
-#include SKIP_FILE
 #include CLASSIFY_FILE
+#include SKIP_FILE
 #include TERMINATE_FILE
 #include MARCH_FILE
 
@@ -18,5 +19,5 @@ void main() {
     if (range.x < range.y && segmentIsEmpty(ray, range)) {
         live.y = live.x;
     }
-    writeResult(march(ray, live), range);
+    writeResult(closed(march(ray, live)), range);
 }

@@ -13,27 +13,30 @@ int freeCount(vec3 blockPosition) {
     return int(texelFetch(freeLengths, clamp(ivec3(blockPosition), ivec3(0), skipBlocks.xyz), 0).r);
 }
 
-/// Layers strictly within the free length, and at least the sample's own.
-int layersWithin(int count, Ray ray) {
+/// Samples strictly within the free length, and at least the one it is counted from.
+int samplesWithin(int count, Ray ray) {
     return int(ceil(float(count - 1) * skipMap.w * kBelow / ray.layerLengthMm));
 }
 
 /// One fetch in the segment's middle proves all of it empty, where the free length reaches both
 /// ends.
 bool segmentIsEmpty(Ray ray, ivec2 range) {
-    int middle = (range.x + range.y - 1) / 2;
+    int last = range.y - 1 + kSharedEnds; // sample
+    int middle = (range.x + last) / 2;
     int count = freeCount(samplePosition(ray, middle) * skipMap.xyz);
-    int reach = max(middle - range.x, range.y - 1 - middle);
-    return count > 0 && max(1, layersWithin(count, ray)) > reach;
+    int reach = max(middle - range.x, last - middle);
+    return count > 0 && max(1, samplesWithin(count, ray)) > reach;
 }
 
-/// What one fetch decides: all layers within the block, free or not, and those within its free
-/// length. Blocks are tested with a voxel's margin, so rounding at their faces does not matter.
+/// What one fetch decides: all layers that begin within the block, free or not, and those within
+/// its free length; a layer is free whose samples all are. Blocks are tested with a voxel's margin,
+/// so rounding at their faces does not matter.
 Stretch stretchAt(vec3 uvw, Ray ray) {
     vec3 position = uvw * skipMap.xyz;
     int count = freeCount(position);
     vec3 ahead = vec3(greaterThan(ray.step, vec3(0.0))) - (position - floor(position));
     vec3 toFace = abs(ahead * ray.inverseStep / skipMap.xyz);
     int inBlock = int(min(min(toFace.x, min(toFace.y, toFace.z)), 1.0e6)) + 1;
-    return Stretch(count > 0 ? max(inBlock, layersWithin(count, ray)) : inBlock, count > 0);
+    int free = count > 0 ? max(inBlock, samplesWithin(count, ray)) - kSharedEnds : 0;
+    return Stretch(free > 0 ? free : inBlock, free > 0);
 }

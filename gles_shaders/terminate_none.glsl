@@ -1,3 +1,7 @@
 bool terminated(float alpha) {
     return false;
 }
+
+vec4 closed(vec4 sum) {
+    return sum;
+}

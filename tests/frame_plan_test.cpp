@@ -46,7 +46,7 @@ const Reason* reasonFor(const FramePlan& plan, const std::string& start) {
 /// Any settings within their ranges.
 Settings randomSettings(Dice& dice) {
     Settings s;
-    s.classification = dice.chance(0.5) ? Classification::Post : Classification::Pre;
+    s.classification = static_cast<Classification>(dice.below(3));
     if (dice.chance(0.5)) {
         s.skip = dice.chance(0.5) ? SkipStructure::None : SkipStructure::Proximity;
     }
@@ -65,7 +65,7 @@ Settings randomSettings(Dice& dice) {
     s.tighten = dice.chance(0.5);
     s.target = dice.chance(0.5) ? TargetFormat::Rgba8 : TargetFormat::Rgba16f;
     s.space = dice.chance(0.5) ? CompositingSpace::Display : CompositingSpace::Linear;
-    s.shaded = dice.chance(0.5);
+    s.shaded = s.classification != Classification::Preintegrated && dice.chance(0.5);
     if (dice.chance(0.3)) {
         s.termination.reset();
     }
@@ -116,7 +116,7 @@ void expectExplained(const FramePlan& p, const SceneFacts& facts) {
     if (p.drawsNothing) {
         choices.push_back("draws nothing");
     }
-    if (facts.exactField && p.variant.classification == Classification::Post) {
+    if (facts.exactField && p.variant.classification != Classification::Pre) {
         choices.push_back("exact field");
     }
     for (const std::string& choice : choices) {
@@ -150,6 +150,7 @@ TEST(FramePlan, DiffersWhereAPictureWould) {
     const FramePlan base = planned({});
     const Settings changed[] = {
         {.classification = Classification::Pre},
+        {.classification = Classification::Preintegrated},
         {.skip = SkipStructure::None},
         {.lattice = LatticeKind::Shells},
         {.layerSpacingVoxels = 0.5},
@@ -326,6 +327,25 @@ TEST(FramePlan, BakedTexelsNeedNeitherGradientsNorFetches) {
     EXPECT_FALSE(planned({}, facts).variant.shaded);
 }
 
+TEST(FramePlan, PreIntegrationTellsWhatItsColoursAreOffBy) {
+    const Settings settings{.classification = Classification::Preintegrated};
+    SceneFacts facts = boneFacts();
+    facts.exactField = true;
+    EXPECT_TRUE(planned(settings, facts).variant.exactField);
+    // Layers of 1 mm, seen obliquely of 2: an eighth of their depth, of half the range.
+    facts.maxExtinctionPerMm = 1e-3;
+    facts.visibleColorRange = 0.5;
+    const FramePlan faint = planned(settings, facts);
+    const Reason* reason = reasonFor(faint, "classification preintegrated");
+    ASSERT_NE(reason, nullptr);
+    EXPECT_NE(reason->why.find("at most 0.000125"), std::string::npos) << reason->why;
+    Settings shaded = settings;
+    shaded.shaded = true;
+    const Result<FramePlan> refused = plan(facts, shaded, kHeadset, {});
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_EQ(refused.error().code, ErrorCode::InvalidArgument);
+}
+
 TEST(FramePlan, WarnsWhereEightBitsLeaveLittleOfAnything) {
     // A plane of 16 mm adds 1 - exp(-16 s) of the densest: 4/510 from s = -ln(1 - 4/510)/16 on.
     const double limit = -std::log(1.0 - 4.0 / 510.0) / 16.0;
@@ -349,6 +369,25 @@ TEST(FramePlan, WarnsWhereEightBitsLeaveLittleOfAnything) {
     EXPECT_NE(reasonFor(lost, "warning")->why.find("all of it"), std::string::npos);
     facts.anythingVisible = false;
     EXPECT_EQ(reasonFor(planned({}, facts), "warning"), nullptr);
+}
+
+TEST(FramePlan, WarnsWhereHalfsLoseMuchOfWhatManyPlanesGather) {
+    // 2^-10 of the pixel per plane, as many planes as it takes to become opaque: half from 512 on.
+    SceneFacts facts = boneFacts();
+    facts.maxExtinctionPerMm = 1e-6;
+    const auto slicing = [&](int planes, TargetFormat target) {
+        return planned({.totalLayers = planes, .layersPerPlane = 1, .target = target}, facts);
+    };
+    EXPECT_EQ(reasonFor(slicing(511, TargetFormat::Rgba16f), "warning"), nullptr);
+    const FramePlan lossy = slicing(768, TargetFormat::Rgba16f);
+    ASSERT_NE(reasonFor(lossy, "warning"), nullptr);
+    EXPECT_NE(reasonFor(lossy, "warning")->why.find("lose 75 %"), std::string::npos)
+        << reasonFor(lossy, "warning")->why;
+    // Denser planes hide what lies behind them, its rounding with it.
+    facts.maxExtinctionPerMm = 1.0;
+    EXPECT_EQ(reasonFor(slicing(768, TargetFormat::Rgba16f), "warning"), nullptr);
+    facts.anythingVisible = false;
+    EXPECT_EQ(reasonFor(slicing(768, TargetFormat::Rgba16f), "warning"), nullptr);
 }
 
 TEST(FramePlan, LinearLightIsNotBlendedInEightBits) {

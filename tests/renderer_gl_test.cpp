@@ -188,9 +188,17 @@ TEST_F(RendererTest, RatioChangesNothingBeyondRounding) {
     }
 }
 
+// Red fades into green behind it, so what is left out shows. Where both are of one colour nothing
+// does: a segment that was left early is closed in the colour it had.
 TEST_F(RendererTest, TerminationLosesNoMoreThanItsThreshold) {
-    const Scene scene =
-        makeScene(constantVolume({30, 30, 30}, 5), {.tf = uniformTransfer(1.0, {1.0, 0.5, 0.0})});
+    const Volume ramp = makeVolume({30, 30, 30}, VoxelType::U8, [](glm::ivec3 v) { return v.y; });
+    const auto sceneOf = [&](glm::dvec3 behind) {
+        const double opacity = 1.0 - std::exp(-1.0);
+        return makeScene(
+            ramp, {.tf = {.points = {{0.0, {1.0, 0.5, 0.0}, opacity}, {29.0, behind, opacity}}}});
+    };
+    const Scene scene = sceneOf({0.0, 1.0, 0.0});
+    const Scene plain = sceneOf({1.0, 0.5, 0.0});
     const View view = asymmetricView(scene);
     for (const SegmentForm form : {SegmentForm::Loop, SegmentForm::Unrolled}) {
         Settings settings = segments(32, form);
@@ -201,7 +209,18 @@ TEST_F(RendererTest, TerminationLosesNoMoreThanItsThreshold) {
         const double lost =
             largestDifference(draw(scene, all, view, kSize), draw(scene, early, view, kSize));
         EXPECT_GT(lost, 0.01); // it did leave
-        EXPECT_LE(lost, 0.1 + blendingBound(all) + blendingBound(early));
+        const double rounding = blendingBound(all) + blendingBound(early);
+        EXPECT_LE(lost, 0.1 + rounding);
+        const Picture whole = draw(plain, all, view, kSize);
+        const Picture closed = draw(plain, early, view, kSize);
+        double ofOneColour = 0.0;
+        for (std::size_t i = 0; i < whole.pixels.size(); ++i) {
+            const glm::vec4 off = glm::abs(whole.pixels[i] - closed.pixels[i]);
+            if (whole.pixels[i].a > 0.9999F) {
+                ofOneColour = std::max({ofOneColour, double(off.x), double(off.y), double(off.a)});
+            }
+        }
+        EXPECT_LE(ofOneColour, rounding + 1e-4);
     }
 }
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "core/frame/ratio_tuner.h"
 #include "core/gl/program.h"
@@ -242,26 +241,13 @@ TEST_F(RendererUpkeepTest, LeavesTheStateAsItWas) {
 }
 
 /// Names of a program's samplers, as the driver reports them.
-std::set<std::string> samplersOf(const ShaderVariant& variant) {
+std::vector<std::string> samplersOf(const ShaderVariant& variant) {
     const Result<ShaderPair> text = shaderText(variant);
     EXPECT_TRUE(text.has_value());
     const Result<gl::Program> program =
         gl::buildProgram(name(variant), text->vertex, text->fragment);
     EXPECT_TRUE(program.has_value()) << (program ? "" : program.error().detail);
-    std::set<std::string> samplers;
-    GLint count = 0;
-    gl::GetProgramiv(program->id(), GL_ACTIVE_UNIFORMS, &count);
-    for (GLint i = 0; i < count; ++i) {
-        char label[128];
-        GLint size = 0;
-        GLenum type = 0;
-        gl::GetActiveUniform(program->id(), static_cast<GLuint>(i), sizeof label, nullptr, &size,
-                             &type, label);
-        if (type == GL_SAMPLER_2D || type == GL_SAMPLER_3D || type == GL_UNSIGNED_INT_SAMPLER_3D) {
-            samplers.insert(label);
-        }
-    }
-    return samplers;
+    return gl::activeResources(*program).samplers;
 }
 
 std::size_t occurrences(const std::string& text, const std::string& word) {
@@ -278,11 +264,11 @@ TEST_F(RendererUpkeepTest, WhatIsOffIsAbsentFromTheProgram) {
     skipping.skip = SkipStructure::Proximity;
     ShaderVariant baked = plain;
     baked.classification = Classification::Pre;
-    const std::set<std::string> scalars = {"volumeTexels", "transferTable"};
-    const std::set<std::string> all = {"volumeTexels", "transferTable", "freeLengths"};
+    const std::vector<std::string> scalars = {"transferTable", "volumeTexels"};
+    const std::vector<std::string> all = {"freeLengths", "transferTable", "volumeTexels"};
     EXPECT_EQ(samplersOf(plain), scalars);
     EXPECT_EQ(samplersOf(skipping), all);
-    EXPECT_EQ(samplersOf(baked), std::set<std::string>{"volumeTexels"});
+    EXPECT_EQ(samplersOf(baked), std::vector<std::string>{"volumeTexels"});
 
     // What has no resource of its own leaves its words: each is there where its bit is set and
     // nowhere else.

@@ -36,9 +36,10 @@ std::size_t count(const std::string& text, const std::string& what) {
 }
 
 TEST(ShaderVariant, ValidOnesAreAsManyAsTheTableSays) {
-    // 11 forms (10 lengths and the loop), skip, terminates, counts; post alone also has shaded and
-    // exactField.
-    const std::size_t expected = 11 * (2 * 2 * 2) * (4 + 1);
+    // 11 forms (10 lengths and the loop), skip, terminates, counts; post also has shaded and
+    // exactField, pre-integrated exactField. Rounded to fp16: the loop that draws.
+    const std::size_t looks = 4 + 1 + 2;
+    const std::size_t expected = 11 * (2 * 2 * 2) * looks + (2 * 2) * looks;
     const std::vector<ShaderVariant> variants = allVariants();
     EXPECT_EQ(variants.size(), expected);
     EXPECT_EQ(std::set<ShaderVariant>(variants.begin(), variants.end()).size(), expected);
@@ -59,6 +60,9 @@ TEST(ShaderVariant, ValidityKnowsLengthsAndBakedTexels) {
     EXPECT_FALSE(
         (ShaderVariant{.classification = Classification::Pre, .exactField = true}.valid()));
     EXPECT_TRUE((ShaderVariant{.classification = Classification::Pre, .counts = true}.valid()));
+    constexpr auto kPreintegrated = Classification::Preintegrated;
+    EXPECT_FALSE((ShaderVariant{.classification = kPreintegrated, .shaded = true}.valid()));
+    EXPECT_TRUE((ShaderVariant{.classification = kPreintegrated, .exactField = true}.valid()));
 }
 
 TEST(ShaderVariant, NamesAreAsDocumented) {
@@ -88,12 +92,17 @@ TEST(ShaderVariant, WhatIsOffIsAbsentFromTheText) {
     } rules[] = {
         {"usampler3D freeLengths;", [](const V& v) { return v.skip == SkipStructure::Proximity; }},
         {"texelFetch(freeLengths", [](const V& v) { return v.skip == SkipStructure::Proximity; }},
-        {"sampler2D transferTable;", post},
+        {"sampler2D transferTable;",
+         [](const V& v) { return v.classification != Classification::Pre; }},
+        {"texelFetch(transferTable", post},
+        {"textureLod(transferTable",
+         [](const V& v) { return v.classification == Classification::Preintegrated; }},
         {"texelFetch(volumeTexels", [](const V& v) { return v.exactField; }},
         {"textureLod(volumeTexels", [](const V& v) { return !v.exactField; }},
         {"gradientRow[0].", [](const V& v) { return v.shaded; }},
-        {"material.z * pow(", [](const V& v) { return v.shaded; }},
+        {"material.z * inLight(pow(", [](const V& v) { return v.shaded; }},
         {"pow(", [](const V& v) { return v.shaded; }},
+        {"halved", [](const V& v) { return v.halfGroups != 0; }},
         {"viewport.w", [](const V& v) { return v.terminates; }},
         {"out vec4 colour;", [](const V& v) { return !v.counts; }},
         {"out vec4 work1;", [](const V& v) { return v.counts; }},
@@ -182,11 +191,11 @@ TEST(ShaderText, AFileThatIsNotThereIsAnErrorThatNamesIt) {
     EXPECT_NE(file.error().detail.find("absent.frag"), std::string::npos);
     // Through an include whose define is missing, and through one that names nothing.
     for (const std::map<std::string, std::string>& defines :
-         {std::map<std::string, std::string>{}, {{"COUNT_FILE", "absent.glsl"}}}) {
+         {std::map<std::string, std::string>{}, {{"MEDIUM_FILE", "absent.glsl"}}}) {
         const Result<std::string> inner = expandShader("segment.frag", defines);
         ASSERT_FALSE(inner);
         EXPECT_EQ(inner.error().code, ErrorCode::ShaderCompile);
-        EXPECT_NE(inner.error().detail.find(defines.empty() ? "COUNT_FILE" : "absent.glsl"),
+        EXPECT_NE(inner.error().detail.find(defines.empty() ? "MEDIUM_FILE" : "absent.glsl"),
                   std::string::npos);
     }
 }

@@ -202,6 +202,12 @@ TEST_F(SkipEqualityTest, PreClassified) {
 TEST_F(SkipEqualityTest, PreClassifiedLit) {
     drawScenes(4000, 6, false, Classification::Pre, true);
 }
+TEST_F(SkipEqualityTest, PreIntegrated) {
+    drawScenes(7000, 14, false, Classification::Preintegrated, false);
+}
+TEST_F(SkipEqualityTest, PreIntegratedExactField) {
+    drawScenes(8000, 6, true, Classification::Preintegrated, false);
+}
 TEST_F(SkipEqualityTest, Shaded) {
     drawScenes(5000, 8, false, Classification::Post, true);
 }

@@ -1,3 +1,4 @@
+#include <cfloat>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -199,7 +200,7 @@ TEST(EncodeTexels, WideDataErrByAtMostTheBoundOfTheirFormat) {
 }
 
 TEST(EncodeTexels, FloatsAreExactAsFloats) {
-    const std::vector<float> values{0.1F, -3e38F, 3e38F, 1e-45F, -0.0F, 16777217.0F};
+    const std::vector<float> values{0.1F, -3e38F, 3e38F, 1e-37F, -0.0F, 16777217.0F};
     Volume volume = volumeOf(VoxelType::F32, values);
     const Texels texels = encoded(volume, TexelFormat::R32fExact);
     EXPECT_EQ(texels.maxQuantisationError, 0.0);
@@ -207,6 +208,35 @@ TEST(EncodeTexels, FloatsAreExactAsFloats) {
     const Texels doubles =
         encoded(volumeOf<double>(VoxelType::F64, {0.1, 0.5}), TexelFormat::R32fExact);
     EXPECT_EQ(doubles.maxQuantisationError, std::abs(static_cast<double>(0.1F) - 0.1));
+}
+
+// GPUs take denormals for zero: alone, they are stored as multiples of a power of two.
+TEST(EncodeTexels, DenormalsAreExactAndStoredAsNormals) {
+    const std::vector<float> values{0x1p-149F, -0x1p-140F, 0x1.8p-142F};
+    const Volume volume = volumeOf(VoxelType::F32, values);
+    const Texels texels = encoded(volume, TexelFormat::R32fExact);
+    EXPECT_EQ(texels.maxQuantisationError, 0.0);
+    EXPECT_EQ(measuredError(volume, texels), 0.0);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        EXPECT_TRUE(std::isnormal(sampledByDefinition(texels, i))) << i;
+        EXPECT_GE(std::abs(sampledByDefinition(texels, i)), double(FLT_MIN)) << i;
+    }
+}
+
+// Differences of what is sampled stay finite in float32.
+TEST(EncodeTexels, LargestFloatsKeepFiniteDifferences) {
+    const Volume volume = volumeOf<float>(VoxelType::F32, {-3.4e38F, 3.4e38F});
+    const Texels texels = encoded(volume, TexelFormat::R32fExact);
+    EXPECT_EQ(measuredError(volume, texels), 0.0);
+    EXPECT_LE(sampledByDefinition(texels, 1) - sampledByDefinition(texels, 0), double(FLT_MAX));
+}
+
+// Nothing divides by a range that float64 cannot divide.
+TEST(EncodeTexels, DenormalDoublesDoNoHarm) {
+    const Volume volume = volumeOf<double>(VoxelType::F64, {0.0, 1e-310, 5e-324});
+    for (const TexelFormat format : kAllFormats) {
+        EXPECT_LE(encoded(volume, format).maxQuantisationError, 1e-310) << name(format);
+    }
 }
 
 TEST(EncodeTexels, WideIntegersAsFloats) {

@@ -46,8 +46,7 @@ void fillShading(FrameBlock& block, const ShadingParameters& shading,
 
 } // namespace
 
-FrameBlock makeFrameBlock(const RayFrame& f, const Frustum& frustum, const Scene& scene,
-                          const FramePlan& plan) {
+FrameBlock makeFrameBlock(const RayFrame& f, const Scene& scene, const FramePlan& plan) {
     const bool shells = f.lattice.kind == LatticeKind::Shells;
     FrameBlock block{};
     block.centre0 = packed(f.centre0, f.lattice.total / 2.0);
@@ -58,8 +57,8 @@ FrameBlock makeFrameBlock(const RayFrame& f, const Frustum& frustum, const Scene
     block.directionY = packed(f.directionY, f.mmPerViewUnit);
     block.tangent = glm::vec4(glm::dvec4(f.tangent0, f.tangentPerPixel));
     block.sphere = packed(f.sphereCentre, f.sphereDistance);
-    block.viewTangent = glm::vec4(glm::dvec4(f.tangent0, 2.0 / (frustum.right - frustum.left),
-                                             2.0 / (frustum.top - frustum.bottom)));
+    block.miss = glm::vec4(glm::dvec4(f.tangent0 * f.sphereCentre.z - glm::dvec2(f.sphereCentre),
+                                      f.tangentPerPixel * f.sphereCentre.z));
     block.viewport =
         glm::vec4(glm::dvec4(f.viewportCentre, shells ? 1.0 : 0.0, plan.terminationAlpha));
     const TableAxis axis = tableAxis(scene.texels(), scene.table());
@@ -68,6 +67,10 @@ FrameBlock makeFrameBlock(const RayFrame& f, const Frustum& frustum, const Scene
                              classified != nullptr ? 1.0 / classified->referenceLengthMm
                                                    : scene.table().extinctionPerMm},
                             axis.lastTexel);
+    if (const PreintegratedTable* table = scene.preintegrated()) {
+        const int last = table->size() - 1;
+        block.tableEnds = {table->at(0, 0), table->at(last, last)};
+    }
     block.decode = decodeWeights(scene.texels().format);
     if (scene.cloud() != nullptr) {
         fillSkip(block, *scene.cloud(), scene.geometry().dims);

@@ -16,9 +16,10 @@ struct FrameBlock {
     glm::vec4 direction0, directionX, directionY;
     glm::vec4 tangent;
     glm::vec4 sphere;
-    glm::vec4 viewTangent;
+    glm::vec4 miss;
     glm::vec4 viewport;
     glm::vec4 tableMap;
+    std::array<glm::vec4, 2> tableEnds;
     glm::vec4 skipMap;
     glm::vec4 decode;
     std::array<glm::vec4, 3> gradientRow;
@@ -28,12 +29,11 @@ struct FrameBlock {
     glm::ivec4 skipBlocks;
     glm::ivec4 jitter;
 };
-static_assert(sizeof(FrameBlock) == 16 * 23);
+static_assert(sizeof(FrameBlock) == 16 * 25);
 
 class Scene;
 
 /// Rounds a view's float64 coefficients to what the shaders take. Pure.
-FrameBlock makeFrameBlock(const RayFrame& frame, const Frustum& frustum, const Scene& scene,
-                          const FramePlan& plan);
+FrameBlock makeFrameBlock(const RayFrame& frame, const Scene& scene, const FramePlan& plan);
 
 } // namespace slabcast

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <tuple>
 
+#include "core/transfer/preintegrated.h"
+
 namespace slabcast {
 
 namespace {
@@ -18,6 +20,8 @@ constexpr double kWorthSkipping = 0.95;
 constexpr double kHalfStep8Bit = 0.5 / 255.0;
 /// A plane that adds less is off by more than a quarter of it.
 constexpr double kFaint8Bit = 4.0 * kHalfStep8Bit;
+constexpr double kStepOfHalf = 0x1p-10; // of fp16, relative: a device may take either neighbour
+constexpr double kMuchOfAll = 0.5;
 
 std::string number(double value) {
     char text[32];
@@ -58,6 +62,11 @@ Result<void> check(const Settings& s) {
         return fail(ErrorCode::InvalidArgument,
                     "planes and layers per plane are both set: give one, the total "
                     "number of layers decides the other");
+    }
+    if (s.shaded && s.classification == Classification::Preintegrated) {
+        return fail(ErrorCode::InvalidArgument,
+                    "pre-integrated classification has no shading: leave shading off, or take "
+                    "post-classification");
     }
     return {};
 }
@@ -159,15 +168,31 @@ struct Planner {
         }
     }
 
+    std::string reasonOfClassification() const {
+        if (settings.classification == Classification::Preintegrated) {
+            return "opacity is exact for any length of a layer along which the field is linear, "
+                   "colour off by at most " +
+                   number(facts.visibleColorRange * preintegratedColorError(mostDepthOf(1)));
+        }
+        if (!settings.shaded) {
+            return "no shading: no gradients are fetched";
+        }
+        return settings.classification == Classification::Post ? "shaded per sample"
+                                                               : "shading is baked into the texels";
+    }
+
+    /// Of the densest run of layers that this TF can make; obliqueness lengthens it by less than 2
+    /// up to 120 degrees.
+    double mostDepthOf(int layers) const {
+        return facts.maxExtinctionPerMm * plan.lattice.spacingMm * layers * 2.0;
+    }
+
     void chooseTermination() {
         if (!settings.termination) {
             because("no termination", "asked for");
             return;
         }
-        // The densest segment that this TF can make; obliqueness lengthens it by less than 2 up to
-        // 120 degrees.
-        const double depth =
-            facts.maxExtinctionPerMm * plan.lattice.spacingMm * plan.layersPerPlane * 2.0;
+        const double depth = mostDepthOf(plan.layersPerPlane);
         if (plan.layersPerPlane == 1 || 1.0 - std::exp(-depth) < *settings.termination) {
             because("no termination",
                     plan.layersPerPlane == 1
@@ -201,16 +226,25 @@ struct Planner {
     void warnOfRounding() {
         const double most = 1.0 - std::exp(-facts.maxExtinctionPerMm * plan.lattice.spacingMm *
                                            plan.layersPerPlane);
-        if (plan.target != TargetFormat::Rgba8 || !facts.anythingVisible || most >= kFaint8Bit) {
+        const bool eightBits = plan.target == TargetFormat::Rgba8;
+        // What a plane's rounding takes shows through the planes before it.
+        const double halfLost = kStepOfHalf * std::min<double>(plan.planes, 1.0 / most);
+        if (!facts.anythingVisible || (eightBits ? most >= kFaint8Bit : halfLost < kMuchOfAll)) {
             return;
         }
-        const std::string lost = most < kHalfStep8Bit
-                                     ? "rounds all of it away (below 1/510)"
-                                     : "is off by up to " + number(100.0 * kHalfStep8Bit / most) +
-                                           " % of it and loses all that is below 1/510";
+        std::string lost = "rounds all of it away (below 1/510)";
+        if (!eightBits) {
+            lost = "keeps 11 bits of what " + std::to_string(plan.planes) +
+                   " planes gather and may lose " + number(100.0 * std::min(1.0, halfLost)) +
+                   " % of it";
+        } else if (most >= kHalfStep8Bit) {
+            lost = "is off by up to " + number(100.0 * kHalfStep8Bit / most) +
+                   " % of it and loses all that is below 1/510";
+        }
         because("warning", "even the densest material adds only " + number(most) +
-                               " per plane: rgba8 " + lost +
-                               "; --target rgba16f or fewer planes keep it");
+                               " per plane: " + name(plan.target) + " " + lost +
+                               (eightBits ? "; --target rgba16f or fewer planes keep it"
+                                          : "; fewer planes keep it"));
     }
 };
 
@@ -285,13 +319,14 @@ Result<FramePlan> plan(const SceneFacts& facts, const Settings& settings, const 
     result.variant.unroll =
         ratio.form == SegmentForm::Unrolled ? unrollLengthFor(ratio.layersPerPlane) : 0;
     result.variant.classification = settings.classification;
-    result.variant.exactField = facts.exactField && settings.classification == Classification::Post;
+    result.variant.exactField = facts.exactField && settings.classification != Classification::Pre;
     result.variant.shaded = settings.shaded && settings.classification == Classification::Post;
     planner.because(std::string("classification ") + name(settings.classification),
-                    !settings.shaded ? "no shading: no gradients are fetched"
-                    : settings.classification == Classification::Post
-                        ? "shaded per sample"
-                        : "shading is baked into the texels");
+                    planner.reasonOfClassification());
+    if (facts.oneMaterial) {
+        planner.because("one material",
+                        "the transfer function is constant over the data, so is its table");
+    }
     if (result.variant.exactField) {
         planner.because(
             "exact field",
@@ -308,7 +343,8 @@ Result<FramePlan> plan(const SceneFacts& facts, const Settings& settings, const 
     result.drawsNothing = !facts.anythingVisible;
     if (result.drawsNothing) {
         planner.because("draws nothing",
-                        "the transfer function makes no value of this volume visible");
+                        "the transfer function makes no value of this volume visible: "
+                        "no program is compiled, no texture made, no plane drawn");
     }
     return std::move(planner.plan);
 }

@@ -46,7 +46,9 @@ struct SceneFacts {
     bool occupancyKnown =
         true; // a skip structure was built: planes can be tightened, space skipped
     double occupiedFraction = 1.0; // of the skip structure's blocks
+    bool oneMaterial = false;      // the transfer function is constant over the data
     double maxExtinctionPerMm = 0.0;
+    double visibleColorRange = 1.0; // of any channel
 };
 
 /// One way to deal the layers out to planes.

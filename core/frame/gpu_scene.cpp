@@ -20,6 +20,9 @@ Result<void> keep(gl::Texture& slot, Result<gl::Texture> made) {
 } // namespace
 
 GpuScene::Sources GpuScene::needs(const Scene& scene, const FramePlan& plan) {
+    if (plan.drawsNothing) {
+        return {};
+    }
     const int look = scene.lookGeneration();
     const bool pre = plan.variant.classification == Classification::Pre;
     return {pre ? look : scene.texelsGeneration(), pre ? 0 : look,
@@ -35,22 +38,24 @@ Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const g
     if (held_.volume != needed.volume) {
         held_.volume = 0;
         volume_.release(); // before the next is allocated: two volumes may not fit
+        volumeBytes_ = 0;
         const bool pre = plan.variant.classification == Classification::Pre;
-        if (Result<void> done = updateVolume(scene, pre, caps); !done) {
-            return done;
+        if (needed.volume != 0) {
+            if (Result<void> done = updateVolume(scene, pre, caps); !done) {
+                return done;
+            }
         }
         held_.volume = needed.volume;
     }
     if (held_.table != needed.table) {
         held_.table = 0;
         table_.release();
-        const std::vector<glm::vec4>& texels = scene.table().texels;
+        tableBytes_ = 0;
         if (needed.table != 0) {
-            if (Result<void> done = keep(table_, uploadTable(texels, caps)); !done) {
+            if (Result<void> done = updateTable(scene, caps); !done) {
                 return done;
             }
         }
-        tableBytes_ = needed.table == 0 ? 0 : static_cast<std::int64_t>(texels.size()) * 8;
         held_.table = needed.table;
     }
     if (held_.skip != needed.skip) {
@@ -70,6 +75,15 @@ Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const g
         held_.skip = needed.skip;
     }
     return {};
+}
+
+Result<void> GpuScene::updateTable(const Scene& scene, const gl::Caps& caps) {
+    constexpr std::int64_t kBytesPerTexel = 8;
+    const PreintegratedTable* table = scene.preintegrated();
+    const std::size_t texels = table ? table->texels.size() : scene.table().texels.size();
+    tableBytes_ = static_cast<std::int64_t>(texels) * kBytesPerTexel;
+    return keep(table_, table ? uploadSquareTable(table->texels, caps)
+                              : uploadTable(scene.table().texels, caps));
 }
 
 Result<void> GpuScene::updateVolume(const Scene& scene, bool pre, const gl::Caps& caps) {

@@ -37,6 +37,7 @@ private:
     };
     static Sources needs(const Scene& scene, const FramePlan& plan);
 
+    Result<void> updateTable(const Scene& scene, const gl::Caps& caps);
     Result<void> updateVolume(const Scene& scene, bool pre, const gl::Caps& caps);
 
     Sources held_;

@@ -283,6 +283,9 @@ ProxyStack tightStack(const RayFrame& frame, const Frustum& frustum, const glm::
     const glm::dvec2 viewLow(frustum.left, frustum.bottom);
     const glm::dvec2 viewHigh(frustum.right, frustum.top);
     const double half = frame.lattice.total / 2.0;
+    // Layers that end before this show nothing: the near plane or the eye, as float32 may place it.
+    const double nearest =
+        std::max(frame.nearDepth, 0.0) - frame.spacing * (1e-3 + 0x1p-22 * frame.lattice.total);
     for (const VisibleBox& box : boxes) {
         const Appearance seen = appearance(frame, viewFromUvw, box);
         if (seen.hidden) {
@@ -299,8 +302,9 @@ ProxyStack tightStack(const RayFrame& frame, const Frustum& frustum, const glm::
             return static_cast<int>(
                 std::clamp(std::floor(layer / layersPerPlane), 0.0, planes - 1.0));
         };
+        const double shown = std::max(seen.front, nearest);
         const int last = planeAt(seen.back + jitterReach(frame));
-        for (int p = planeAt(seen.front - jitterReach(frame)); p <= last; ++p) {
+        for (int p = planeAt(shown - jitterReach(frame)); p <= last; ++p) {
             rectangles[p].include(low, high);
         }
     }

@@ -129,7 +129,7 @@ void Renderer::State::drawStack(const Scene& scene, const FramePlan& plan, const
     }
     program.use();
     textures.bind();
-    drawer.draw(makeFrameBlock(frame, view.frustum, scene, plan), stack, plan.tighten);
+    drawer.draw(makeFrameBlock(frame, scene, plan), stack, view.frustum, plan.tighten);
 }
 
 Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -149,7 +149,7 @@ Result<Renderer> Renderer::create(const gl::Caps& caps) {
 
 Result<void> Renderer::prepare(const Scene& scene, const FramePlan& plan) {
     if (plan.drawsNothing) {
-        return {};
+        return state_->textures.update(scene, plan, state_->caps);
     }
     if (!fits(plan, scene.look())) {
         return fail(ErrorCode::InvalidArgument,
@@ -253,6 +253,12 @@ Result<WorkCounters> Renderer::countWork(const Scene& scene, const FramePlan& pl
 double Renderer::compileMs(const ShaderVariant& variant) const {
     const auto found = state_->programs.find(variant);
     return found == state_->programs.end() ? 0.0 : found->second.buildMs();
+}
+
+gl::ActiveResources Renderer::resources(const ShaderVariant& variant) const {
+    const auto found = state_->programs.find(variant);
+    return found == state_->programs.end() ? gl::ActiveResources{}
+                                           : gl::activeResources(found->second);
 }
 
 GpuMemory Renderer::gpuMemory() const {

@@ -9,6 +9,7 @@
 #include "core/frame/scene.h"
 #include "core/frame/view.h"
 #include "core/gl/caps.h"
+#include "core/gl/program.h"
 
 namespace slabcast {
 
@@ -55,7 +56,8 @@ public:
     ~Renderer();
 
     /// Brings textures and shaders up to date with scene and plan. Nothing is done for what is
-    /// there already; textures that the plan does not use are released, compiled shaders are kept.
+    /// there already; textures that the plan does not use are released (all, where it draws
+    /// nothing), compiled shaders are kept.
     /// Restores the GL state (gl::StateGuard).
     /// Fails: InvalidArgument (the plan is not for the scene's look), DeviceOutOfMemory,
     /// VolumeTooLarge, ShaderCompile.
@@ -75,6 +77,8 @@ public:
 
     /// Time that compiling the plan's variant took; 0 before prepare().
     double compileMs(const ShaderVariant& variant) const;
+    /// What the variant's program uses, by the driver's account; nothing before prepare().
+    gl::ActiveResources resources(const ShaderVariant& variant) const;
     GpuMemory gpuMemory() const;
 
     /// The context is gone: drops all names without a GL call. prepare() makes everything again.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <functional>
 
 #include "core/skip/cell_visibility.h"
 
@@ -40,19 +41,30 @@ Result<void> Scene::setLook(const Look& look, const SkipOptions& skip, int maxTa
         look_.shading->gradientFloorPerMm = defaultGradientFloorPerMm();
     }
     lookGeneration_ = nextGeneration();
-    table_ = makeTable(look_.tf, statistics_.min, statistics_.max, integerData_, look_.space,
-                       maxTableSize);
+    buildTable(maxTableSize);
     classified_.reset();
     if (look_.classification == Classification::Pre) {
         ClassifySettings settings;
         if (look_.shading) {
             settings.light = BakedLight{look_.bakedLightDirection, *look_.shading};
         }
-        classified_ = classify(texels_, geometry_, table_, settings);
+        classified_ = classify(texels_, geometry_, table(), settings);
     }
     cloud_.reset();
     return skip.structure == SkipStructure::Proximity ? buildCloud(skip.blockEdgeVoxels)
                                                       : Result<void>{};
+}
+
+void Scene::buildTable(int maxTableSize) {
+    const VolumeStatistics& s = statistics_;
+    if (look_.classification == Classification::Preintegrated) {
+        preintegrated_ = makePreintegratedTable(look_.tf, s.min, s.max, integerData_, look_.space,
+                                                std::min(maxTableSize, kMaxPreintegratedSize));
+        table_ = {};
+    } else {
+        table_ = makeTable(look_.tf, s.min, s.max, integerData_, look_.space, maxTableSize);
+        preintegrated_.reset();
+    }
 }
 
 Result<void> Scene::buildCloud(int blockEdgeVoxels) {
@@ -64,7 +76,7 @@ Result<void> Scene::buildCloud(int blockEdgeVoxels) {
     const TexelCodes alpha = pre ? alphaCodes(*classified_) : TexelCodes{};
     const CellVisibility visibility =
         pre ? cellVisibilityOfAlpha(alpha)
-            : cellVisibility(*codes_, texels_, table_, filterErrorSampled_);
+            : cellVisibility(*codes_, texels_, table(), filterErrorSampled_);
     Result<ProximityCloud> cloud = buildProximityCloud(visibility, geometry_, blockEdgeVoxels);
     if (!cloud) {
         return tl::unexpected(cloud.error());
@@ -86,10 +98,15 @@ SceneFacts Scene::facts() const {
         facts.occupiedFraction =
             static_cast<double>(cloud_->occupiedBlocks) / (blocks.x * blocks.y * blocks.z);
     }
-    for (const glm::vec4& texel : table_.texels) {
+    const std::vector<glm::vec4>& texels = table().texels;
+    facts.oneMaterial =
+        std::adjacent_find(texels.begin(), texels.end(), std::not_equal_to<>()) == texels.end();
+    for (const glm::vec4& texel : texels) {
         facts.maxExtinctionPerMm = std::max(facts.maxExtinctionPerMm,
-                                            static_cast<double>(texel.a) * table_.extinctionPerMm);
+                                            static_cast<double>(texel.a) * table().extinctionPerMm);
     }
+    facts.visibleColorRange =
+        visibleColorRange(look_.tf, statistics_.min, statistics_.max, look_.space);
     facts.anythingVisible =
         facts.maxExtinctionPerMm > 0.0 && (!cloud_ || cloud_->occupiedBlocks > 0);
     return facts;

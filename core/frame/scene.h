@@ -9,6 +9,7 @@
 #include "core/frame/proxy_stack.h"
 #include "core/skip/proximity_cloud.h"
 #include "core/transfer/preclassified.h"
+#include "core/transfer/preintegrated.h"
 #include "core/transfer/shading.h"
 #include "core/transfer/transfer_function.h"
 #include "core/volume/texels.h"
@@ -51,8 +52,14 @@ public:
     const VolumeStatistics& statistics() const { return statistics_; }
     const Texels& texels() const { return texels_; }
     const Look& look() const { return look_; }
-    const TransferTable& table() const { return table_; }
+    /// By one value; of a pre-integrated look what its table holds for front and back alike.
+    const TransferTable& table() const {
+        return preintegrated_ ? preintegrated_->diagonal : table_;
+    }
     const ClassifiedTexels* classified() const { return classified_ ? &*classified_ : nullptr; }
+    const PreintegratedTable* preintegrated() const {
+        return preintegrated_ ? &*preintegrated_ : nullptr;
+    }
     const ProximityCloud* cloud() const { return cloud_ ? &*cloud_ : nullptr; }
     double cloudBuildMs() const { return cloudBuildMs_; }
     /// Numbers that no other texels and no other look of this process have: textures made from
@@ -64,6 +71,7 @@ public:
     double defaultGradientFloorPerMm() const;
 
 private:
+    void buildTable(int maxTableSize);
     Result<void> buildCloud(int blockEdgeVoxels);
 
     std::string volumeName_;
@@ -74,7 +82,8 @@ private:
     double filterErrorSampled_ = 0.0;
     std::shared_ptr<const TexelCodes> codes_; // made when the first cloud is
     Look look_;
-    TransferTable table_;
+    TransferTable table_; // of no use beside a pre-integrated one
+    std::optional<PreintegratedTable> preintegrated_;
     std::optional<ClassifiedTexels> classified_;
     std::optional<ProximityCloud> cloud_;
     double cloudBuildMs_ = 0.0;

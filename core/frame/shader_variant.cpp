@@ -4,8 +4,30 @@
 
 namespace slabcast {
 
+namespace {
+
+struct ClassificationInfo {
+    Classification classification;
+    const char* name;
+    const char* shaderFile;
+};
+
+constexpr std::array<ClassificationInfo, 3> kClassifications = {{
+    {Classification::Post, "post", "classify_post.glsl"},
+    {Classification::Pre, "preclassified", "classify_pre.glsl"},
+    {Classification::Preintegrated, "preintegrated", "classify_preintegrated.glsl"},
+}};
+
+const ClassificationInfo& infoOf(Classification classification) {
+    const auto index = static_cast<std::size_t>(classification);
+    SLABCAST_EXPECTS(index < kClassifications.size(), index);
+    return kClassifications[index];
+}
+
+} // namespace
+
 const char* name(Classification classification) {
-    return classification == Classification::Post ? "post" : "preclassified";
+    return infoOf(classification).name;
 }
 
 const char* name(SkipStructure skip) {
@@ -25,6 +47,7 @@ std::string name(const ShaderVariant& v) {
     text += v.exactField ? "+exact" : "";
     text += v.terminates ? "+terminate" : "";
     text += v.counts ? "+counts" : "";
+    text += v.halfGroups != 0 ? "+half" + std::to_string(v.halfGroups) : "";
     return text + (v.unroll == 0 ? "/loop" : "/unroll" + std::to_string(v.unroll));
 }
 
@@ -33,18 +56,24 @@ std::vector<ShaderVariant> allVariants() {
     lengths.push_back(0);
     std::vector<ShaderVariant> variants;
     for (const int length : lengths) {
-        for (int bits = 0; bits < 64; ++bits) {
-            const auto bit = [bits](int k) { return (bits >> k & 1) != 0; };
-            const ShaderVariant v{.classification =
-                                      bit(0) ? Classification::Pre : Classification::Post,
-                                  .skip = bit(1) ? SkipStructure::Proximity : SkipStructure::None,
-                                  .shaded = bit(2),
-                                  .exactField = bit(3),
-                                  .terminates = bit(4),
-                                  .unroll = length,
-                                  .counts = bit(5)};
-            if (v.valid()) {
+        for (const ClassificationInfo& info : kClassifications) {
+            for (int bits = 0; bits < 32; ++bits) {
+                const auto bit = [bits](int k) { return (bits >> k & 1) != 0; };
+                ShaderVariant v{.classification = info.classification,
+                                .skip = bit(0) ? SkipStructure::Proximity : SkipStructure::None,
+                                .shaded = bit(1),
+                                .exactField = bit(2),
+                                .terminates = bit(3),
+                                .unroll = length,
+                                .counts = bit(4)};
+                if (!v.valid()) {
+                    continue;
+                }
                 variants.push_back(v);
+                if (v.unroll == 0 && !v.counts) {
+                    v.halfGroups = kHalfAll;
+                    variants.push_back(v);
+                }
             }
         }
     }
@@ -53,14 +82,15 @@ std::vector<ShaderVariant> allVariants() {
 
 Result<ShaderPair> shaderText(const ShaderVariant& v) {
     SLABCAST_EXPECTS(v.valid(), v.unroll);
-    const bool pre = v.classification == Classification::Pre;
     std::map<std::string, std::string> defines = {
         {"MAX_OUTLINES", std::to_string(kMaxOutlines)},
         {"COUNT_FILE", v.counts ? "count_work.glsl" : "count_none.glsl"},
+        {"MEDIUM_FILE", v.halfGroups == 0 ? "medium_exact.glsl" : "medium_half.glsl"},
+        {"HALF_GROUPS", std::to_string(v.halfGroups)},
         {"SKIP_FILE", v.skip == SkipStructure::None ? "skip_none.glsl" : "skip_proximity.glsl"},
         {"FIELD_FILE", v.exactField ? "field_exact.glsl" : "field_filtered.glsl"},
         {"SHADE_FILE", v.shaded ? "shade_phong.glsl" : "shade_none.glsl"},
-        {"CLASSIFY_FILE", pre ? "classify_pre.glsl" : "classify_post.glsl"},
+        {"CLASSIFY_FILE", infoOf(v.classification).shaderFile},
         {"TERMINATE_FILE", v.terminates ? "terminate_early.glsl" : "terminate_none.glsl"},
         {"MARCH_FILE", v.unroll == 0 ? "march_loop.glsl" : "march_unrolled.glsl"},
     };

@@ -9,11 +9,16 @@
 
 namespace slabcast {
 
-enum class Classification : std::uint8_t { Post, Pre };
+enum class Classification : std::uint8_t { Post, Pre, Preintegrated };
 enum class SkipStructure : std::uint8_t { None, Proximity };
 
 const char* name(Classification classification);
 const char* name(SkipStructure skip);
+
+/// Groups of operations that a device may do in 16 bits: a layer's opacity from its depth; the sum
+/// of layers; the table's interpolation and the premultiplied colour; light.
+inline constexpr int kHalfOpacity = 1, kHalfSum = 2, kHalfMaterial = 4, kHalfLight = 8;
+inline constexpr int kHalfAll = 15;
 
 /// Lengths of segments that are written out layer by layer.
 inline constexpr std::array<int, 10> kUnrollLengths = {1, 2, 4, 8, 12, 16, 24, 32, 48, 64};
@@ -28,13 +33,15 @@ int unrollLengthFor(int layersPerPlane);
 ///
 /// | field          | off                            | on                                             |
 /// |----------------|--------------------------------|------------------------------------------------|
-/// | classification | Post: field + table            | Pre: one RGBA8 texture, colours baked          |
+/// | classification | Post: field + table            | Pre: one RGBA8 texture, colours baked;         |
+/// |                |                                | Preintegrated: field + table of both ends      |
 /// | skip           | None                           | Proximity: one more texture, two tests         |
 /// | shaded         | colour as classified           | 6 more fields per visible sample (Post only)   |
-/// | exactField     | texture unit's filter          | 8 fetches, float32 (Post only)                 |
+/// | exactField     | texture unit's filter          | 8 fetches, float32 (not Pre)                   |
 /// | terminates     | every layer                    | leaves when nearly opaque                      |
 /// | unroll         | 0: loop                        | layers written out, from kUnrollLengths        |
 /// | counts         | draws                          | writes work counters instead of colour         |
+/// | halfGroups     | 0: float32                     | these rounded to fp16: what mediump may do     |
 // clang-format on
 struct ShaderVariant {
     Classification classification = Classification::Post;
@@ -44,6 +51,7 @@ struct ShaderVariant {
     bool terminates = false;
     int unroll = 0;
     bool counts = false;
+    int halfGroups = 0; // sum of kHalf...; for measuring
 
     bool operator==(const ShaderVariant&) const = default;
     auto operator<=>(const ShaderVariant&) const = default;
@@ -57,15 +65,18 @@ struct ShaderVariant {
             }
             return unroll == 0;
         }();
-        const bool baked = classification == Classification::Pre;
-        return listed && !(baked && (shaded || exactField));
+        const bool shadable = classification == Classification::Post;
+        const bool hasField = classification != Classification::Pre;
+        const bool measured = halfGroups >= 0 && halfGroups <= kHalfAll;
+        return listed && measured && (shadable || !shaded) && (hasField || !exactField);
     }
 };
 
 /// As logs and statistics show it: "post+proximity+shaded+terminate/unroll16".
 std::string name(const ShaderVariant& variant);
 
-/// All valid variants. For the test that walks them.
+/// All valid variants; of those that round to fp16, all groups at once in the loop form. For the
+/// test that walks them.
 std::vector<ShaderVariant> allVariants();
 
 /// Planes whose outlines fit the uniform block that every GLES 3.2 device has (16 KiB).

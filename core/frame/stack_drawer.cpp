@@ -67,7 +67,8 @@ void StackDrawer::connect(const gl::Program& program) {
     }
 }
 
-void StackDrawer::draw(FrameBlock block, const ProxyStack& stack, bool tight) const {
+void StackDrawer::draw(FrameBlock block, const ProxyStack& stack, const Frustum& frustum,
+                       bool tight) const {
     const int planes = static_cast<int>(stack.outlines.size());
     if (planes == 0) {
         return;
@@ -75,8 +76,12 @@ void StackDrawer::draw(FrameBlock block, const ProxyStack& stack, bool tight) co
     const int planesPerOutline = (planes + kMaxOutlines - 1) / kMaxOutlines;
     std::vector<glm::vec4> outlines;
     outlines.reserve(kMaxOutlines);
+    const glm::dvec2 low(frustum.left, frustum.bottom);
+    const glm::dvec2 high(frustum.right, frustum.top);
+    const glm::dvec2 halfView = (high - low) / 2.0;
     for (const Outline& o : grouped(stack, planesPerOutline)) {
-        outlines.push_back(glm::vec4(glm::dvec4(o.centre, o.halfSize)));
+        outlines.push_back(glm::vec4(
+            glm::dvec4((o.centre - (low + high) / 2.0) / halfView, o.halfSize / halfView)));
     }
     outlines.resize(kMaxOutlines); // the block's declared size must be backed
     block.counts = {stack.firstPlane, planes, block.counts.z, planesPerOutline};

@@ -20,8 +20,9 @@ public:
     static void connect(const gl::Program& program);
 
     /// `block`'s counts are filled in here. `tight`: outlines are drawn as rectangles, not as
-    /// 10-gons.
-    void draw(FrameBlock block, const ProxyStack& stack, bool tight) const;
+    /// 10-gons. They are related to the view in float64: from afar a tangent's float32 is coarser
+    /// than a pixel.
+    void draw(FrameBlock block, const ProxyStack& stack, const Frustum& frustum, bool tight) const;
 
     void forget();
 

@@ -1,6 +1,7 @@
 #include "core/gl/program.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <span>
 #include <vector>
@@ -125,6 +126,27 @@ Result<Program> buildProgram(std::string_view label, std::string_view vertexText
 Result<Program> buildComputeProgram(std::string_view label, std::string_view computeText) {
     const StageText stages[] = {{GL_COMPUTE_SHADER, "compute shader", computeText}};
     return build(label, stages);
+}
+
+ActiveResources activeResources(const Program& program) {
+    constexpr std::array kSamplers = {GL_SAMPLER_2D, GL_SAMPLER_3D, GL_UNSIGNED_INT_SAMPLER_3D};
+    GLint longest = 0;
+    ActiveResources active;
+    GetProgramiv(program.id(), GL_ACTIVE_UNIFORMS, &active.uniforms);
+    GetProgramiv(program.id(), GL_ACTIVE_UNIFORM_MAX_LENGTH, &longest);
+    std::string name(static_cast<std::size_t>(std::max(longest, 1)), '\0');
+    for (GLint i = 0; i < active.uniforms; ++i) {
+        GLsizei length = 0;
+        GLint size = 0;
+        GLenum type = 0;
+        GetActiveUniform(program.id(), static_cast<GLuint>(i), longest, &length, &size, &type,
+                         name.data());
+        if (std::find(kSamplers.begin(), kSamplers.end(), type) != kSamplers.end()) {
+            active.samplers.push_back(name.substr(0, static_cast<std::size_t>(length)));
+        }
+    }
+    std::sort(active.samplers.begin(), active.samplers.end());
+    return active;
 }
 
 } // namespace slabcast::gl

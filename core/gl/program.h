@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/gl/objects.h"
 
@@ -40,5 +41,14 @@ private:
 Result<Program> buildProgram(std::string_view label, std::string_view vertexText,
                              std::string_view fragmentText);
 Result<Program> buildComputeProgram(std::string_view label, std::string_view computeText);
+
+/// What a program uses, by the driver's own account.
+struct ActiveResources {
+    int uniforms = 0;                  // members of uniform blocks and samplers included
+    std::vector<std::string> samplers; // in alphabetical order
+};
+
+/// Tested by: left_out_gl_test.cpp
+ActiveResources activeResources(const Program& program);
 
 } // namespace slabcast::gl

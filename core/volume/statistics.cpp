@@ -86,7 +86,8 @@ VolumeStatistics statisticsOf(std::span<const T> voxels, double slope, double in
     const double range = extent.max - extent.min;
     // Bins run along the data values, so a negative slope counts from the largest voxel downwards.
     const double origin = slope > 0.0 ? extent.min : extent.max;
-    const double binsPerStep = range > 0.0 ? std::copysign(256.0 / range, slope) : 0.0;
+    const double bins = 256.0 / range; // infinite where the range is nothing, or next to nothing
+    const double binsPerStep = std::isfinite(bins) ? std::copysign(bins, slope) : 0.0;
     const Spread spread = spreadOf(voxels, mean, origin, binsPerStep);
     const double a = slope * extent.min + intercept;
     const double b = slope * extent.max + intercept;

@@ -34,6 +34,20 @@ double storedVoxel(const Volume& volume, double dataValue) {
     }
 }
 
+/// Power of two by which floats are stored: 1, but for those so small that a GPU takes them for
+/// zero, or so large that differences of them overflow.
+double floatStep(double first, double last) {
+    constexpr int kLeastStep = -1000;      // whose inverse is finite in float64
+    constexpr int kSmallestExponent = -64; // leaves room for a table's texels per value
+    constexpr int kLargestExponent = 125;
+    const double largest = std::max(std::abs(first), std::abs(last));
+    const int exponent = largest > 0.0 ? std::ilogb(largest) : 0;
+    if (exponent < kSmallestExponent) {
+        return std::ldexp(1.0, std::max(exponent, kLeastStep));
+    }
+    return exponent > kLargestExponent ? 4.0 : 1.0;
+}
+
 /// Integers whose range fits are kept as they are, a step each; floats in a float format too. All
 /// else is spread evenly over the format's exact range, which is where its error is smallest: fp16
 /// over +-2048 errs by at most 2^-13 of the range.
@@ -41,13 +55,16 @@ template <class T, class Codec>
 Mapping mappingFor(const Volume& volume, const VolumeStatistics& statistics) {
     const double sign = volume.rescaleSlope > 0.0 ? 1.0 : -1.0;
     constexpr bool kStoresFloats = std::is_same_v<typename Codec::Texel, float>;
-    if constexpr (kStoresFloats && std::is_floating_point_v<T>) {
-        return {0.0, sign};
-    }
     const double first = storedVoxel<T>(volume, statistics.min);
-    const double range = std::abs(storedVoxel<T>(volume, statistics.max) - first);
+    const double last = storedVoxel<T>(volume, statistics.max);
+    if constexpr (kStoresFloats && std::is_floating_point_v<T>) {
+        return {0.0, sign * floatStep(first, last)};
+    }
+    const double range = std::abs(last - first);
+    // A range that float64 itself no longer divides is none.
+    const bool constant = range / Codec::kExactUnits < std::numeric_limits<double>::min();
     const bool stepEach =
-        kStoresFloats || range == 0.0 || (std::is_integral_v<T> && range <= Codec::kExactUnits);
+        kStoresFloats || constant || (std::is_integral_v<T> && range <= Codec::kExactUnits);
     const double step = stepEach ? sign : sign * range / Codec::kExactUnits;
     const double centre = Codec::kCentred ? std::round(0.5 * range / std::abs(step)) : 0.0;
     return {first + step * centre, step};

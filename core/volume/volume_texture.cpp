@@ -1,6 +1,7 @@
 #include "core/volume/volume_texture.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -153,6 +154,31 @@ Result<gl::Texture> upload3d(const char* label, const Layout& layout, glm::ivec3
     return texture;
 }
 
+/// A transfer table, RGBA16F.
+Result<gl::Texture> uploadTable2d(glm::i64vec2 size, GLint filter, GLenum type, const void* texels,
+                                  const gl::Caps& caps) {
+    // As wide as high, or one row: no table is higher than wide.
+    if (size.x == 0 || size.x > caps.maxTextureSize) {
+        return fail(ErrorCode::InvalidArgument, "a transfer table of " + std::to_string(size.x) +
+                                                    " entries; the device takes 1 to " +
+                                                    std::to_string(caps.maxTextureSize));
+    }
+    const gl::StateGuard guard;
+    gl::StateGuard::usePlainPixelTransfer();
+    gl::takeError();
+    gl::Texture texture = gl::Texture::make("transfer table", GL_TEXTURE_2D);
+    gl::BindTexture(GL_TEXTURE_2D, texture.id());
+    const auto columns = static_cast<GLsizei>(size.x);
+    const auto rows = static_cast<GLsizei>(size.y);
+    gl::TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA16F, columns, rows);
+    setSampling(GL_TEXTURE_2D, filter);
+    gl::TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, columns, rows, GL_RGBA, type, texels);
+    if (const auto uploaded = takeUploadError("the transfer table"); !uploaded) {
+        return tl::unexpected(uploaded.error());
+    }
+    return texture;
+}
+
 } // namespace
 
 std::int64_t uploadedBytesPerTexel(TexelFormat format, bool preclassified) {
@@ -211,25 +237,15 @@ Result<gl::Texture> uploadBytes3d(std::span<const std::uint8_t> bytes, glm::ivec
 }
 
 Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, const gl::Caps& caps) {
-    const auto width = static_cast<std::int64_t>(texels.size());
-    if (width == 0 || width > caps.maxTextureSize) {
-        return fail(ErrorCode::InvalidArgument, "a transfer table of " + std::to_string(width) +
-                                                    " entries; the device takes 1 to " +
-                                                    std::to_string(caps.maxTextureSize));
-    }
-    const gl::StateGuard guard;
-    gl::StateGuard::usePlainPixelTransfer();
-    gl::takeError();
-    gl::Texture texture = gl::Texture::make("transfer table", GL_TEXTURE_2D);
-    gl::BindTexture(GL_TEXTURE_2D, texture.id());
-    const auto columns = static_cast<GLsizei>(width);
-    gl::TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA16F, columns, 1);
-    setSampling(GL_TEXTURE_2D, GL_NEAREST);
-    gl::TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, columns, 1, GL_RGBA, GL_FLOAT, texels.data());
-    if (const auto uploaded = takeUploadError("the transfer table"); !uploaded) {
-        return tl::unexpected(uploaded.error());
-    }
-    return texture;
+    return uploadTable2d({static_cast<std::int64_t>(texels.size()), 1}, GL_NEAREST, GL_FLOAT,
+                         texels.data(), caps);
+}
+
+Result<gl::Texture> uploadSquareTable(const std::vector<glm::u16vec4>& halfs,
+                                      const gl::Caps& caps) {
+    const auto edge = std::llround(std::sqrt(static_cast<double>(halfs.size())));
+    SLABCAST_EXPECTS(edge * edge == static_cast<std::int64_t>(halfs.size()), edge);
+    return uploadTable2d({edge, edge}, GL_LINEAR, GL_HALF_FLOAT, halfs.data(), caps);
 }
 
 } // namespace slabcast

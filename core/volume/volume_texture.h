@@ -62,4 +62,7 @@ Result<gl::Texture> uploadBytes3d(std::span<const std::uint8_t> bytes, glm::ivec
 /// A transfer table: RGBA16F, width x 1, for texelFetch on a sampler2D.
 Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, const gl::Caps& caps);
 
+/// A pre-integrated table: RGBA16F, as wide as high, filtered.
+Result<gl::Texture> uploadSquareTable(const std::vector<glm::u16vec4>& halfs, const gl::Caps& caps);
+
 } // namespace slabcast
