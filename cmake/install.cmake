@@ -26,9 +26,8 @@ if(TARGET slabcast_images)
 endif()
 if(TARGET slabcast)
     install(TARGETS slabcast RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-    install(PROGRAMS perf/report.py DESTINATION ${CMAKE_INSTALL_DATADIR}/slabcast/perf)
-    install(FILES perf/report_data.py perf/report_plots.py perf/report_page.py perf/report.css
-        DESTINATION ${CMAKE_INSTALL_DATADIR}/slabcast/perf)
+    install(DIRECTORY perf/ DESTINATION ${CMAKE_INSTALL_DATADIR}/slabcast/perf USE_SOURCE_PERMISSIONS
+        FILES_MATCHING PATTERN "*.py" PATTERN "*.css" PATTERN stability EXCLUDE PATTERN __pycache__ EXCLUDE)
 endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 

@@ -1,9 +1,10 @@
 """A sweep's measurements as the report needs them: read, checked, ordered."""
 
-import json
-import math
 from dataclasses import dataclass, field
 from pathlib import Path
+
+import page_input
+from page_input import BadInput, number
 
 # What may tell two rows of one ratio apart, in the order in which labels name it.
 SERIES_KEYS = ("skip", "form", "tighten", "lattice", "classification", "termination")
@@ -16,17 +17,6 @@ COUNTERS = {
 }
 # Tukora 2020, section 3 and Fig. 4: frames per second (without skipping, with skipping) on the paper's phone.
 PAPER_FIGURES = {"ray casting": (4.7, 8.5), "hybrid": (None, 36.0), "slicing": (13.9, 13.9)}
-
-
-class BadInput(Exception):
-    """One line for a person: the cause, then the remedy."""
-
-
-def number(value):
-    """`value` as a finite float, or None: JSON of other makers holds nulls and strings."""
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        return None
-    return float(value) if math.isfinite(value) else None
 
 
 @dataclass
@@ -87,15 +77,12 @@ class Sweep:
         return sorted({row.ratio for row in self.rows}, key=lambda r: (r[0], -r[1]))
 
     def section(self, name):
-        part = self.raw.get(name)
-        return part if isinstance(part, dict) else {}
+        return page_input.section(self.raw, name)
 
 
 def _row(raw, where):
-    if not isinstance(raw, dict):
-        raise BadInput(f"{where} is no object; run the sweep again")
     planes, layers = number(raw.get("planes")), number(raw.get("layersPerPlane"))
-    times = raw.get("frameMs") if isinstance(raw.get("frameMs"), dict) else {}
+    times = page_input.section(raw, "frameMs")
     median = number(times.get("median"))
     for name, value in (("planes", planes), ("layersPerPlane", layers), ("frameMs.median", median)):
         if value is None or value <= 0:
@@ -143,16 +130,6 @@ def _group(rows):
 
 def load(folder):
     """DIR/sweep.json. Raises BadInput."""
-    path = Path(folder) / "sweep.json"
-    try:
-        raw = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise BadInput(f"{path}: no such file; `slabcast sweep VOLUME --out {folder}` makes it") from None
-    except OSError as error:
-        raise BadInput(f"{path}: {error.strerror}; check the path and its permissions") from None
-    except ValueError as error:
-        raise BadInput(f"{path}: not JSON ({error}); run the sweep again") from None
-    if not isinstance(raw, dict) or not isinstance(raw.get("rows"), list) or not raw["rows"]:
-        raise BadInput(f"{path}: holds no rows; run the sweep again")
+    path, raw = page_input.read(folder, "sweep.json", "rows", "sweep VOLUME")
     rows = [_row(row, f"{path}: rows[{i}]") for i, row in enumerate(raw["rows"])]
     return Sweep(raw, Path(folder), rows, _group(rows))

@@ -1,101 +1,34 @@
 """The report as one self-contained HTML page."""
 
-import base64
-import html
-from pathlib import Path
-
 import report_plots as plots
+from page_html import (MISSING, by, card, cards, command, device_facts, document, esc, facts, figure, figures, image,
+                       masthead, mebibytes, millions, on_off, section, table, times)
+from page_input import picture
 from report_data import PAPER_FIGURES, number
 
-MISSING = "–"
 
-
-def esc(value):
-    return html.escape(str(value))
-
-
-def figures(value, digits=3):
-    """Three significant figures below a thousand, whole numbers above."""
-    value = number(value)
-    if value is None:
-        return MISSING
-    return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.{digits}g}"
-
-
-def times(value):
-    return MISSING if value is None else f"{value:.2f}×"
-
-
-def mebibytes(value):
-    value = number(value)
-    return None if value is None else f"{figures(value / 2**20)} MiB"
-
-
-def millions(value):
-    return MISSING if value is None else f"{value / 1e6:,.2f}"
-
-
-def table(head, rows, caption="", css=""):
-    """The first column names the row; all others are figures."""
-    head = "".join(f"<th scope=col>{cell}</th>" for cell in head)
-    body = "".join(
-        "<tr>" + "".join(f"<th scope=row>{cell}</th>" if i == 0 else f"<td>{cell}</td>"
-                         for i, cell in enumerate(row)) + "</tr>" for row in rows)
-    caption = f"<caption>{caption}</caption>" if caption else ""
-    return (f'<div class="scroll"><table class="{css}">{caption}<thead><tr>{head}</tr></thead>'
-            f"<tbody>{body}</tbody></table></div>")
-
-
-def facts(pairs):
-    """A definition list; what is not known is left out."""
-    items = "".join(f"<div><dt>{esc(name)}</dt><dd>{value}</dd></div>"
-                    for name, value in pairs if value not in (None, ""))
-    return f'<dl class="facts">{items}</dl>'
-
-
-def figure(draw, sweep, caption):
-    """`draw` in both widths; the style sheet shows one. Nothing where there is nothing to draw."""
-    wide, narrow = draw(sweep, False), draw(sweep, True)
-    if wide is None:
-        return ""
-    return (f'<figure><div class="wide">{wide}</div><div class="narrow">{narrow}</div>'
-            f"<figcaption>{caption}</figcaption></figure>")
-
-
-def section(title, body):
-    return f"<section><h2>{title}</h2>{body}</section>" if body else ""
-
-
-def masthead(sweep):
+def head(sweep):
     volume, device = sweep.section("volume"), sweep.section("device")
-    name = esc(volume.get("name", "volume"))
-    dims = "×".join(str(d) for d in volume.get("dims", []))
-    line = ", ".join(part for part in (name, dims, esc(device.get("renderer", "unknown device")))
-                     if part)
-    notice = ""
-    if device.get("software"):
-        notice = ('<p class="notice"><strong>Drawn by a software driver.</strong> The processor stands in for a '
-                  "GPU: these milliseconds say nothing about a headset. Compare rows of this page with one "
-                  "another, and read the work counters, which do not depend on speed.</p>")
-    return (f'<header><p class="kicker">Slabcast · ratio sweep</p><h1>How many planes, how many layers each?</h1>'
-            f'<p class="lede">{line}</p>{notice}{findings(sweep)}</header>')
+    line = ", ".join(part for part in (esc(volume.get("name", "volume")), by(volume.get("dims", [])),
+                                       esc(device.get("renderer", "unknown device"))) if part)
+    return masthead("ratio sweep", "How many planes, how many layers each?", line, device, findings(sweep))
 
 
 def findings(sweep):
     """What was found, in words and this run's own ratios."""
-    cards = []
+    found = []
     for series in sweep.series:
         best = series.best
         gain = series.speed_up(best)
         against = f"{times(gain)} the speed of slicing" if gain else "slicing was not measured"
-        cards.append(f'<div class="card {"skips" if series.skips else ""}"><span>{esc(series.label)}: best at</span>'
-                     f"<b>{best.label}</b><span>{figures(best.median_ms)} ms; {against}</span></div>")
-    return f'<div class="cards">{"".join(cards)}</div>'
+        found.append(card(f"{esc(series.label)}: best at", best.label, f"{figures(best.median_ms)} ms; {against}",
+                          "skips" if series.skips else ""))
+    return cards(found)
 
 
 def run_facts(sweep):
-    device, conditions, volume = (sweep.section(n) for n in ("device", "conditions", "volume"))
-    size = "×".join(str(s) for s in conditions.get("size", []))
+    conditions, volume = sweep.section("conditions"), sweep.section("volume")
+    size = by(conditions.get("size", []))
     spacing = " × ".join(figures(s) for s in volume.get("spacingMm", []))
     settings = " · ".join(esc(conditions[key]) for key in ("classification", "space", "target", "lattice")
                           if conditions.get(key))
@@ -103,21 +36,16 @@ def run_facts(sweep):
     layers = conditions.get("totalLayers")
     step = number(conditions.get("layerSpacingMm"))
     views = conditions.get("views")
-    command = sweep.raw.get("command")
     return facts([
-        ("Device", esc(device.get("renderer", MISSING))),
-        ("Vendor", esc(device.get("vendor", ""))),
-        ("Driver", esc(device.get("version", MISSING))),
-        ("Date", esc(sweep.raw.get("date", MISSING))),
-        ("Commit", f"<code>{esc(sweep.raw.get('commit', MISSING))}</code>"),
+        *device_facts(sweep.raw),
         ("Volume", " · ".join(part for part in (esc(volume.get("type", "")), f"{spacing} mm" if spacing else "") if part)),
         ("Picture", f"{size}{f', {views} views' if number(views) and views > 1 else ''}" if size else None),
         ("Settings", settings),
         ("Shading, termination", f"{esc(shade)}, {esc(termination)}" if shade or termination else None),
         ("Layers", f"{layers} in total{f', {figures(step)} mm apart' if step else ''}" if layers else None),
-        ("Tight polygons", {True: "on", False: "off"}.get(conditions.get("tighten"))),
+        ("Tight polygons", on_off(conditions.get("tighten"))),
         ("Frames per row", conditions.get("framesPerRow")),
-    ]) + (f'<p class="command"><code>{esc(command)}</code></p>' if command else "")
+    ]) + command(sweep.raw)
 
 
 def _measured_at(sweep, kind):
@@ -194,7 +122,7 @@ def all_rows(sweep):
             ms, raw = row.raw["frameMs"], row.raw
             lines.append([
                 row.label, esc(raw.get("skip", MISSING)), esc(raw.get("form", MISSING)),
-                {True: "on", False: "off"}.get(raw.get("tighten"), MISSING), f"<b>{figures(row.median_ms)}</b>",
+                on_off(raw.get("tighten")) or MISSING, f"<b>{figures(row.median_ms)}</b>",
                 f"{figures(row.low_ms)} – {figures(row.high_ms)}",
                 f"{figures(ms.get('p10'))} – {figures(ms.get('p90'))}", figures(ms.get("n")), figures(row.fps),
                 *(millions(row.counter(name)) for name in plots.COUNTERS),
@@ -202,21 +130,12 @@ def all_rows(sweep):
     return table(head, lines, css="rows") + '<p class="note">Counters are millions per frame.</p>'
 
 
-def _thumbnail(sweep, row):
-    """The path of a row's picture, only inside the sweep's own folder; None where there is none."""
-    relative = row.raw.get("thumbnail")
-    path = (sweep.folder / str(relative)).resolve()
-    if not relative or not path.is_relative_to(sweep.folder.resolve()) or not path.is_file():
-        return None
-    return path
-
-
 def _pictures(sweep, ratio):
     """Bytes of each different picture of one ratio -> (labels of the series, files) that hold it."""
     pictures = {}
     for series in sweep.series:
         for row in series.rows:
-            path = _thumbnail(sweep, row) if row.ratio == ratio else None
+            path = picture(sweep.folder, row.raw.get("thumbnail")) if row.ratio == ratio else None
             if path:
                 labels, paths = pictures.setdefault(path.read_bytes(), ([], set()))
                 labels.append(series.label)
@@ -240,15 +159,13 @@ def thumbnails(sweep):
     tiles = []
     for (planes, layers), pictures in found.items():
         for data, (labels, _) in pictures.items():
-            uri = "data:image/png;base64," + base64.b64encode(data).decode()
             which = f"<i>{esc('; '.join(labels))}</i>" if len(pictures) > 1 else ""
-            tiles.append(f'<figure><img src="{uri}" alt="The volume at {planes}×{layers}" loading="lazy">'
+            tiles.append(f'<figure>{image(data, f"The volume at {planes}×{layers}")}'
                          f"<figcaption>{planes}×{layers}{which}</figcaption></figure>")
     return f'{_thumbnail_note(found)}<div class="tiles">{"".join(tiles)}</div>' if tiles else ""
 
 
 def page(sweep):
-    style = (Path(__file__).parent / "report.css").read_text(encoding="utf-8")
     loops = any(row.raw.get("form") == "loop" for row in sweep.rows)
     sections = [
         section("This run", run_facts(sweep)),
@@ -267,7 +184,4 @@ def page(sweep):
         section("Every row", all_rows(sweep)),
     ]
     title = f"Ratio sweep: {esc(sweep.section('volume').get('name', 'volume'))}"
-    return (f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
-            f'<meta name="viewport" content="width=device-width, initial-scale=1"><title>{title}</title>'
-            f"<style>\n{style}</style></head>\n<body><main>{masthead(sweep)}\n"
-            + "\n".join(filter(None, sections)) + "</main></body></html>\n")
+    return document(title, head(sweep), sections)

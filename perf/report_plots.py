@@ -1,47 +1,14 @@
 """The report's plots, as SVG text. Each is drawn wide for desks and narrow for phones."""
 
-import io
-import re
-
-import matplotlib
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
-matplotlib.use("svg")
-import matplotlib.pyplot as plt  # noqa: E402
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter  # noqa: E402
+from page_svg import MUTED, NARROW, WIDE, legend_above, plain_log_ticks, plt, svg
+from report_data import COUNTERS, PAPER_FIGURES, number
 
-from report_data import COUNTERS, PAPER_FIGURES, number  # noqa: E402
-
-INK, MUTED, RULE = "#22262b", "#6b7280", "#e3e5e8"
 PLAIN = ("#b5532a", "#d79a55", "#8a6d3b")
 SKIPPING = ("#1d6091", "#5aa0a8", "#6a5aa8")
 PAPER = "#8b8f96"
-
-plt.rcParams.update({
-    "font.family": "DejaVu Sans", "font.size": 9, "svg.fonttype": "path", "svg.hashsalt": "slabcast",
-    "axes.edgecolor": MUTED, "axes.labelcolor": INK, "axes.linewidth": 0.7, "text.color": INK,
-    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True,
-    "axes.titlesize": 9, "axes.titlelocation": "left", "axes.titleweight": "bold",
-    "grid.color": RULE, "grid.linewidth": 0.7, "xtick.color": MUTED, "ytick.color": MUTED,
-    "xtick.labelcolor": INK, "ytick.labelcolor": INK, "legend.frameon": False,
-    "figure.constrained_layout.use": True,
-})
-
-
-def _svg(figure, name):
-    """Inline SVG that scales with the page; ids are made unique, for a page holds several."""
-    buffer = io.StringIO()
-    figure.savefig(buffer, format="svg", transparent=True, metadata={"Date": None})
-    plt.close(figure)
-    text = buffer.getvalue()
-    text = text[text.index("<svg"):]
-    text = re.sub(r'\b(id="|xlink:href="#|url\(#)', rf"\g<1>{name}-", text)
-    text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
-    return re.sub(r' width="[\d.]+pt"| height="[\d.]+pt"', "", text, count=2)
-
-
-def _plain_number(value, _=None):
-    return f"{value:g}" if value < 10000 else f"{value:,.0f}"
 
 
 def _colours(sweep):
@@ -70,15 +37,13 @@ def _ratio_axis(axes, sweep, room, label=True):
 
 def _log_ms_axis(axes):
     axes.set_yscale("log")
-    axes.yaxis.set_major_locator(LogLocator(10, subs=(1, 2, 5)))
-    axes.yaxis.set_major_formatter(FuncFormatter(_plain_number))
-    axes.yaxis.set_minor_formatter(NullFormatter())
+    plain_log_ticks(axes.yaxis)
     axes.tick_params(axis="y", which="minor", length=0)
 
 
 def frame_times(sweep, narrow):
     """The core paper's Fig. 4 for this device: median, with whiskers from the fastest to the slowest frame."""
-    figure, axes = plt.subplots(figsize=(4.0, 3.9) if narrow else (8.6, 4.1))
+    figure, axes = plt.subplots(figsize=(NARROW, 3.9) if narrow else (WIDE, 4.1))
     places = _ratio_axis(axes, sweep, 5 if narrow else 14)
     _log_ms_axis(axes)
     middle = (len(sweep.series) - 1) / 2
@@ -98,11 +63,9 @@ def frame_times(sweep, narrow):
         axes.plot([], [], "o", ms=5, mec=MUTED, mfc="white", label="hollow: loop, not unrolled")
     fps = axes.secondary_yaxis("right", functions=(_reciprocal, _reciprocal))
     fps.set_ylabel("frames per second")
-    fps.yaxis.set_major_locator(LogLocator(10, subs=(1, 2, 5)))
-    fps.yaxis.set_major_formatter(FuncFormatter(_plain_number))
-    fps.yaxis.set_minor_formatter(NullFormatter())
-    _legend_above(axes, narrow)
-    return _svg(figure, f"times{'-n' if narrow else ''}")
+    plain_log_ticks(fps.yaxis)
+    legend_above(axes, narrow)
+    return svg(figure, f"times{'-n' if narrow else ''}")
 
 
 def _reciprocal(value):
@@ -110,16 +73,11 @@ def _reciprocal(value):
     return 1000.0 / np.maximum(value, 1e-9)
 
 
-def _legend_above(axes, narrow, y=1.0):
-    axes.legend(loc="lower left", bbox_to_anchor=(0, y), borderaxespad=0.2, fontsize=8,
-                ncol=1 if narrow else 2, handlelength=1.6, columnspacing=1.4)
-
-
 def speed_ups(sweep, narrow):
     """Speed as a multiple of slicing: the one scale on which another device's figures may stand beside ours."""
     if not any(series.slicing for series in sweep.series):
         return None
-    figure, axes = plt.subplots(figsize=(4.0, 3.3) if narrow else (8.6, 3.3))
+    figure, axes = plt.subplots(figsize=(NARROW, 3.3) if narrow else (WIDE, 3.3))
     places = _ratio_axis(axes, sweep, 5 if narrow else 14)
     for series, colour in zip(sweep.series, _colours(sweep)):
         if series.slicing:
@@ -134,8 +92,8 @@ def speed_ups(sweep, narrow):
                   fontsize=7.5, color=MUTED)
     axes.set_ylim(bottom=0, top=max(axes.get_ylim()[1], reached * 1.15))
     axes.set_ylabel("speed, slicing = 1")
-    _legend_above(axes, narrow)
-    return _svg(figure, f"speed{'-n' if narrow else ''}")
+    legend_above(axes, narrow)
+    return svg(figure, f"speed{'-n' if narrow else ''}")
 
 
 def counters(sweep, narrow):
@@ -145,8 +103,8 @@ def counters(sweep, narrow):
         return None
     columns = 1 if narrow else 2
     lines = -(-len(names) // columns)
-    figure, grid = plt.subplots(lines, columns, figsize=(4.0, 2.0 * lines + 0.6) if narrow else
-                                (8.6, 2.0 * lines + 0.5), sharex=True, squeeze=False)
+    figure, grid = plt.subplots(lines, columns, figsize=(NARROW, 2.0 * lines + 0.6) if narrow else
+                                (WIDE, 2.0 * lines + 0.5), sharex=True, squeeze=False)
     panels = list(grid.T.flat)
     for axes in panels[len(names):]:
         axes.set_visible(False)
@@ -163,10 +121,10 @@ def counters(sweep, narrow):
         axes.yaxis.set_major_locator(MaxNLocator(4))
         axes.tick_params(axis="x", labelbottom=bottom)
     if narrow:
-        _legend_above(panels[0], narrow, y=1.16)
+        legend_above(panels[0], narrow, y=1.16)
     else:
         figure.legend(*panels[0].get_legend_handles_labels(), loc="lower right", fontsize=8)
-    return _svg(figure, f"work{'-n' if narrow else ''}")
+    return svg(figure, f"work{'-n' if narrow else ''}")
 
 
 def compile_times(sweep, narrow):
@@ -180,7 +138,7 @@ def compile_times(sweep, narrow):
     if not longest:
         return None
     ordered = sorted(longest.items(), key=lambda item: item[0][::-1])
-    figure, axes = plt.subplots(figsize=(4.0 if narrow else 8.6, 0.23 * len(ordered) + 0.7))
+    figure, axes = plt.subplots(figsize=(NARROW if narrow else WIDE, 0.23 * len(ordered) + 0.7))
     for place, ((_, skips), ms) in enumerate(ordered):
         axes.barh(place, ms, height=0.68, color=SKIPPING[0] if skips else PLAIN[0])
         axes.annotate(f" {ms:.0f}" if ms >= 10 else f" {ms:.1f}", (ms, place), va="center",
@@ -191,4 +149,4 @@ def compile_times(sweep, narrow):
     axes.tick_params(axis="y", length=0)
     axes.margins(x=0.1, y=0.01)
     axes.set_xlabel("compile and link, ms")
-    return _svg(figure, f"compile{'-n' if narrow else ''}")
+    return svg(figure, f"compile{'-n' if narrow else ''}")

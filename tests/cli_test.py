@@ -6,6 +6,7 @@ usage: cli_test.py SLABCAST [arguments of unittest]
 
 import csv
 import json
+import math
 import os
 import re
 import shutil
@@ -25,7 +26,7 @@ REPORT = Path(__file__).resolve().parent.parent / "perf" / "report.py"
 PHANTOM = "phantom:shells:24"
 RATIO = ("--layers", "16", "--planes", "4")  # what is given is not measured
 QUICK = ("--size", "32x32", *RATIO)
-COMMANDS = ("render", "sweep", "info", "device")
+COMMANDS = ("render", "sweep", "error", "info", "device")
 POINT = {"value": 0, "color": [1, 1, 1], "opacity": 0.5}
 
 
@@ -295,6 +296,12 @@ class BadUsage(CliTest):
                           (("render", PHANTOM, "-o", "p.png", "--colour"), "--colour"),
                           (("sweep", PHANTOM), "--out is required"),
                           (("sweep", PHANTOM, "--out", "d", "--layers", "1,x"), "--layers: '1,x'"),
+                          (("error", PHANTOM), "--out is required"),
+                          (("error", PHANTOM, "--out", "d", "--layer-spacing", "1,0"), "--layer-spacing: '1,0'"),
+                          (("error", PHANTOM, "--out", "d", "--classify", "post,best"), "--classify: 'post,best'"),
+                          (("error", PHANTOM, "--out", "d", "--termination", ""), "--termination"),
+                          (("render", PHANTOM, "-o", "p.png", "--target-error", "0.1", "--planes", "2"),
+                           "--planes excludes --target-error"),
                           (("paint",), "paint"),
                           (("info",), "VOLUME is required"),
                           (("device", "2"), "2")))
@@ -501,6 +508,144 @@ class Sweep(CliTest):
         self.write("file", "kept")
         self.fails("sweep", PHANTOM, "--out", "file/sweep", cause="file/sweep", remedy="give another")
         self.fails("sweep", "missing.nrrd", "--out", "sweep", cause="missing.nrrd", remedy="check the path")
+
+
+class Accuracy(CliTest):
+    """One small grid of a smooth field, measured once for all tests."""
+
+    SPACINGS, LAYERS, TARGETS = (2, 1, 0.5, 0.25), (1, 0), ("rgba8", "rgba16f")
+    GRID = ("error", "phantom:marschner-lobb:32", "--size", "48x48", "--out", "err", "--frames", "2",
+            "--layer-spacing", "2,1,0.5,0.25", "--layers-per-plane", "1,0", "--classify", "post",
+            "--termination", "off", "--jitter", "off")
+    PARTS = ("total", "sampling", "table", "gpu")
+    PAGE = r"[^\n]*report\.html\n"
+
+    @classmethod
+    def setUpClass(cls):
+        cls.measured = Path(tempfile.mkdtemp(prefix="slabcast_accuracy_"))
+        cls.addClassCleanup(shutil.rmtree, cls.measured)
+        cls.env = {"XDG_CACHE_HOME": str(cls.measured / "cache")}
+        subprocess.run([SLABCAST, *cls.GRID], cwd=cls.measured, env={**os.environ, **cls.env}, check=True,
+                       capture_output=True, timeout=120)
+        cls.report = json.loads((cls.measured / "err" / "error.json").read_text())
+
+    def rows(self, **where):
+        return [row for row in self.report["rows"] if all(row[key] == value for key, value in where.items())]
+
+    def test_every_setting_is_a_row_with_all_that_was_measured(self):
+        settings = [(row["spacing"], row["layers"], row["target"]) for row in self.rows()]
+        self.assertEqual(len(settings), len(set(settings)))
+        self.assertEqual(set(settings), {(s, n, t) for s in self.SPACINGS for n in self.LAYERS for t in self.TARGETS})
+        for key in ("command", "commit", "date", "device", "volume", "conditions", "axes", "reference"):
+            self.assertTrue(self.report[key], key)
+        for row in self.rows():
+            self.assertEqual(row["ratio"], {1: "slicing", 0: "ray casting"}[row["layers"]])
+            self.assertEqual(row["frameMs"]["n"], 2)
+            self.assertGreater(row["counters"]["volume_fetches"], 0)
+            for picture in ("thumbnail", "difference"):
+                files.Png((self.measured / "err" / row["pictures"][picture]).read_bytes())
+        with open(self.measured / "err" / "error.csv", newline="", encoding="utf-8") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual([(line["id"], float(line["rmse"]), line["command"]) for line in table],
+                         [(row["id"], row["error"]["total"]["rmse"], row["command"]) for row in self.rows()])
+
+    def test_parts_add_up_as_distances_do(self):
+        """Total is the distance between the ends of a path of three: no longer than it, no shorter than its detours."""
+        for row in self.rows():
+            total, *parts = (row["error"][part]["rmse"] for part in self.PARTS)
+            self.assertLessEqual(total, sum(parts) * (1 + 1e-12))
+            self.assertGreaterEqual(total, (2 * max(parts) - sum(parts)) * (1 - 1e-12))
+
+    def test_error_falls_with_the_spacing_squared(self):
+        rays = self.rows(target="rgba16f", layers=0)  # what is blended once is rounded once
+        totals = [row["error"]["total"]["rmse"] for row in rays]
+        self.assertEqual([row["spacing"] for row in rays], list(self.SPACINGS))
+        self.assertEqual(totals, sorted(totals, reverse=True))
+        self.assertAlmostEqual(rays[-1]["order"]["sampling"], 2.0, delta=0.25)  # midpoints of a smooth field
+        coarse, fine = (row["error"]["sampling"]["rmse"] for row in rays[-2:])
+        self.assertAlmostEqual(rays[-1]["order"]["sampling"], math.log2(coarse / fine), places=9)
+        self.assertEqual((rays[0]["coarser"], rays[1]["coarser"]), (None, rays[0]["id"]))
+        self.assertEqual(set(rays[0]["order"].values()), {None})
+
+    def test_rounding_of_eight_bits_grows_with_the_planes(self):
+        gpu = [row["error"]["gpu"]["rmse"] for row in self.rows(target="rgba8", layers=1)]
+        self.assertGreater(gpu[-1], 2 * gpu[0])
+
+    def test_fronts_hold_what_nothing_beats(self):
+        costs = {"front": lambda row: row["frameMs"]["median"],
+                 "frontByFetches": lambda row: row["counters"]["volume_fetches"] + row["counters"]["skip_fetches"]}
+        for name, cost in costs.items():
+            places = [(cost(row), row["error"]["total"]["rmse"]) for row in self.rows()]
+
+            def beaten(place):
+                return any(other != place and other[0] <= place[0] and other[1] <= place[1] for other in places)
+            front = [places[index] for index in self.report[name]]
+            self.assertEqual(front, sorted({place for place in places if not beaten(place)}))
+
+    def test_the_command_of_a_row_draws_it(self):
+        for row in (self.rows()[0], self.rows()[-1]):
+            command = row["command"].split()
+            self.assertEqual(command[0], "slabcast")
+            text = self.succeeds(*command[1:], "--verify", "--stats", "s.json")
+            self.assertRegex(text, r"(?m)^error: RMSE ")
+            stats = json.loads((self.folder / "s.json").read_text())
+            self.assertEqual(stats["plan"]["planes"], row["plan"]["planes"])
+            for key, value in row["error"]["total"].items():
+                self.assertAlmostEqual(stats["error"][key], value, places=9)
+
+    def test_a_run_goes_on_where_one_was_cut_short(self):
+        shutil.copytree(self.measured / "err", self.folder / "err")
+        finished = self.folder / "err" / "rows.jsonl"
+        lines = finished.read_text().splitlines(keepends=True)
+        kept, cut = lines[:-2], json.loads(lines[-1])["id"]
+        finished.write_text("".join([*kept, lines[-2], lines[-1][:40]]))
+        self.succeeds(*self.GRID, env=self.env, notes=rf"slabcast: err: {len(kept)} rows [^\n]* are kept\n{self.PAGE}")
+        again = json.loads((self.folder / "err" / "error.json").read_text())["rows"]
+        for before, after in zip(self.rows(), again, strict=True):
+            self.assertEqual(before["error"], after["error"])
+            if before["id"] != cut:
+                self.assertEqual(before, after)
+        written = finished.stat().st_mtime_ns
+        self.succeeds(*self.GRID, env=self.env, notes=rf"slabcast: err: {len(kept) + 1} rows [^\n]* kept\n{self.PAGE}")
+        self.assertEqual(finished.stat().st_mtime_ns, written)
+        self.assertEqual(json.loads((self.folder / "err" / "error.json").read_text())["rows"], again)
+
+    def test_other_settings_start_anew(self):
+        shutil.copytree(self.measured / "err", self.folder / "err")
+        self.succeeds(*self.GRID[:-6], "--classify", "post", "--target", "rgba8", "--jitter", "off", "--termination",
+                      "off", "--camera", "40,10,3", env=self.env,
+                      notes=rf"slabcast: err: holds rows that differ in camera: starts anew\n{self.PAGE}")
+        rows = json.loads((self.folder / "err" / "error.json").read_text())["rows"]
+        self.assertEqual(len(rows), len(self.SPACINGS) * len(self.LAYERS))
+        self.assertNotIn(rows[0]["error"]["total"], [row["error"]["total"] for row in self.rows()])
+
+    def test_a_target_takes_the_cheapest_row_that_reaches_it(self):
+        scene = ("render", "phantom:marschner-lobb:32", "-o", "p.png", "--size", "48x48", "--explain", "--verify")
+        target = 1.5 * min(row["error"]["total"]["rmse"] for row in self.rows())
+        reach = [row for row in self.rows() if row["error"]["total"]["rmse"] <= target]
+        best = min(reach, key=lambda row: row["frameMs"]["median"])
+        text = self.succeeds(*scene, "--target-error", repr(target), env=self.env)
+        self.assertRegex(text, rf"(?m)^target error .*{best['target']}, a layer every {best['spacing']:g} voxels, .*"
+                               r"measured with this volume and transfer function$")
+        self.assertAlmostEqual(float(re.search(r"(?m)^error: RMSE ([\d.e-]+)", text).group(1)),
+                               best["error"]["total"]["rmse"], delta=1e-6)
+        other = ("render", "phantom:ramp:16", "-o", "p.png", "--size", "32x32", "--explain", "--target-error", "0.5")
+        self.assertRegex(self.succeeds(*other, env=self.env), r"(?m)^target error .* with other scenes$")
+
+    def test_what_cannot_be_measured_or_reached(self):
+        bad = self.measured / "bad"
+        shutil.copytree(self.measured / "cache" / "slabcast", bad / "slabcast", dirs_exist_ok=True)
+        for table in (bad / "slabcast").iterdir():
+            table.write_text('{"version": 1, "rows": [{"volume": 3}]}')
+        self.write("p.png", "a picture")
+        target = ("render", "phantom:marschner-lobb:32", "-o", "p.png", "--target-error", "1e-9")
+        self.fails(*target, env=self.env, cause="reaches an RMSE of 1e-09: the best is", remedy="slabcast error")
+        self.fails(*target, env={"XDG_CACHE_HOME": str(self.measured / "none")}, cause="no errors were measured",
+                   remedy="slabcast error")
+        self.fails(*target, env={"XDG_CACHE_HOME": str(bad)}, cause="error-table-.*no table", remedy="delete it")
+        self.render_fails(PHANTOM, "--verify", "--shade", "phong", cause="--verify .*shading", remedy="leave")
+        self.fails("error", PHANTOM, "--out", "d", "--shade", "phong", cause="shading", remedy="leave --shade")
+        self.fails("error", "missing.nrrd", "--out", "d", cause="missing.nrrd", remedy="check the path")
 
 
 if __name__ == "__main__":

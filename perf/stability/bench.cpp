@@ -2,11 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "core/base/parallel.h"
 #include "core/gl/api.h"
+#include "core/reference/continuous.h"
 #include "perf/stability/reference_picture.h"
 
 namespace slabcast::stability {
+
+namespace {
+
+/// NaN stays.
+double largerOf(double largest, double next) {
+    return next <= largest ? largest : next;
+}
+
+} // namespace
 
 std::span<const Method> methods() {
     static constexpr Method kMethods[] = {
@@ -55,26 +67,27 @@ Result<FramePlan> Bench::plan(const Scene& scene, const Settings& settings) cons
 
 Result<Drawn> Bench::draw(const Scene& scene, const Settings& settings, const View& view,
                           glm::ivec2 size) {
-    Result<FramePlan> decided = plan(scene, settings);
-    if (!decided) {
-        return tl::unexpected(decided.error());
-    }
-    const GLenum format = decided->target == TargetFormat::Rgba8 ? GL_RGBA8 : GL_RGBA16F;
+    const Result<FramePlan> decided = plan(scene, settings);
+    return decided ? draw(scene, *decided, view, size) : tl::unexpected(decided.error());
+}
+
+Result<Drawn> Bench::draw(const Scene& scene, const FramePlan& plan, const View& view,
+                          glm::ivec2 size) {
+    const GLenum format = plan.target == TargetFormat::Rgba8 ? GL_RGBA8 : GL_RGBA16F;
     if (Result<void> made = target_.resize(size.x, size.y, {format}); !made) {
         return tl::unexpected(made.error());
     }
     target_.begin();
-    const TargetEncoding encoding = decided->space == CompositingSpace::Display
-                                        ? TargetEncoding::Encoded
-                                        : TargetEncoding::Linear;
+    const TargetEncoding encoding =
+        plan.space == CompositingSpace::Display ? TargetEncoding::Encoded : TargetEncoding::Linear;
     const ViewTarget where{view, target_.framebuffer(), {0, 0, size.x, size.y}, encoding};
-    if (Result<void> ready = renderer_.prepare(scene, *decided); !ready) {
+    if (Result<void> ready = renderer_.prepare(scene, plan); !ready) {
         return tl::unexpected(ready.error());
     }
-    if (Result<void> done = renderer_.draw(scene, *decided, {&where, 1}); !done) {
+    if (Result<void> done = renderer_.draw(scene, plan, {&where, 1}); !done) {
         return tl::unexpected(done.error());
     }
-    return Drawn{std::move(*decided), {size, target_.read()}};
+    return Drawn{plan, {size, target_.read()}};
 }
 
 Result<WorkCounters> Bench::countWork(const Scene& scene, const FramePlan& plan, const View& view,
@@ -84,6 +97,37 @@ Result<WorkCounters> Bench::countWork(const Scene& scene, const FramePlan& plan,
     }
     const ViewTarget where{view, 0, {0, 0, size.x, size.y}};
     return renderer_.countWork(scene, plan, {&where, 1});
+}
+
+void Bench::record(Case measured) {
+    if (!names_.insert(measured.name).second) {
+        contractBreach(__func__, ("no other case is called " + measured.name).c_str(), 0.0);
+    }
+    if (watcher_) {
+        watcher_(measured);
+    }
+    cases_.push_back(std::move(measured));
+}
+
+void Bench::record(Case c, const Result<double>& measured) {
+    if (!measured) {
+        recordFailure(std::move(c), measured.error());
+        return;
+    }
+    c.measured = *measured;
+    record(std::move(c));
+}
+
+void Bench::examine(Case c, const Scene& scene, const Settings& settings, const View& view,
+                    glm::ivec2 size,
+                    const std::function<void(Case& c, const Drawn& drawn)>& judge) {
+    const Result<Drawn> drawn = draw(scene, settings, view, size);
+    if (!drawn) {
+        recordFailure(std::move(c), drawn.error());
+        return;
+    }
+    judge(c, *drawn);
+    record(std::move(c));
 }
 
 void Bench::recordFailure(Case unmeasured, const Error& error) {
@@ -98,9 +142,18 @@ double largestDifference(const Picture& picture, std::span<const glm::dvec4> ref
     for (std::size_t i = 0; i < reference.size(); ++i) {
         const glm::dvec4 off = glm::abs(glm::dvec4(picture.pixels[i]) - reference[i]);
         const double most = std::max({off.x, off.y, off.z, off.w});
-        largest = most <= largest ? largest : most; // NaN stays
+        largest = largerOf(largest, most);
     }
     return largest;
+}
+
+std::vector<glm::dvec4> continuousPicture(const Scene& scene, const View& view, glm::ivec2 size) {
+    return renderContinuous({.texels = &scene.texels(),
+                             .geometry = scene.geometry(),
+                             .tf = scene.look().tf,
+                             .space = scene.look().space,
+                             .view = view,
+                             .viewport = {0, 0, size.x, size.y}});
 }
 
 const char* const kPixelBoundReason =
@@ -114,21 +167,24 @@ double shareOfPixelBound(const Scene& scene, const Drawn& drawn, const View& vie
     const glm::ivec2 size = drawn.picture.size;
     const ReferencePicture reference(scene, drawn.plan, view, {0, 0, size.x, size.y});
     const double blending = blendingBound(drawn.plan);
-    double worst = 0.0;
-    for (int y = 0; y < size.y; ++y) {
-        for (int x = 0; x < size.x; ++x) {
-            const PixelReference expected = reference.at(glm::dvec2(x, y) + 0.5);
-            if (expected.atEdge) {
-                continue;
-            }
-            const std::size_t i = static_cast<std::size_t>(y) * size.x + x;
-            const glm::dvec4 off = glm::abs(glm::dvec4(drawn.picture.pixels[i]) - expected.color);
-            const double share =
-                std::max({off.x, off.y, off.z, off.w}) / (expected.bound + blending);
-            worst = share <= worst ? worst : share; // NaN stays
+    const auto shareAt = [&](int x, int y) {
+        const PixelReference expected = reference.at(glm::dvec2(x, y) + 0.5);
+        if (expected.atEdge) {
+            return 0.0;
         }
-    }
-    return worst;
+        const std::size_t i = static_cast<std::size_t>(y) * size.x + x;
+        const glm::dvec4 off = glm::abs(glm::dvec4(drawn.picture.pixels[i]) - expected.color);
+        return std::max({off.x, off.y, off.z, off.w}) / (expected.bound + blending);
+    };
+    std::vector<double> worstOfRow(size.y, 0.0);
+    parallelFor(size.y, 1, [&](std::int64_t begin, std::int64_t end) {
+        for (int y = static_cast<int>(begin); y < end; ++y) {
+            for (int x = 0; x < size.x; ++x) {
+                worstOfRow[y] = largerOf(worstOfRow[y], shareAt(x, y));
+            }
+        }
+    });
+    return std::accumulate(worstOfRow.begin(), worstOfRow.end(), 0.0, largerOf);
 }
 
 std::span<const Family> families() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -53,12 +54,23 @@ public:
     /// Into a target of the plan's format, cleared to transparent black.
     Result<Drawn> draw(const Scene& scene, const Settings& settings, const View& view,
                        glm::ivec2 size);
+    Result<Drawn> draw(const Scene& scene, const FramePlan& plan, const View& view,
+                       glm::ivec2 size);
     Result<WorkCounters> countWork(const Scene& scene, const FramePlan& plan, const View& view,
                                    glm::ivec2 size);
 
-    void record(Case measured) { cases_.push_back(std::move(measured)); }
+    /// Contract: no other case has this name.
+    void record(Case measured);
     /// A case that could not be measured: it fails, with the error as the reason.
     void recordFailure(Case unmeasured, const Error& error);
+    /// Either of the two.
+    void record(Case c, const Result<double>& measured);
+    /// Draws, lets `judge` fill in bound and measured value, and records. The plan is pure: a bound
+    /// made from it is one that was known before.
+    void examine(Case c, const Scene& scene, const Settings& settings, const View& view,
+                 glm::ivec2 size, const std::function<void(Case& c, const Drawn& drawn)>& judge);
+    /// Hears of every case as it is recorded.
+    void setWatcher(std::function<void(const Case&)> watcher) { watcher_ = std::move(watcher); }
 
     const std::vector<Case>& cases() const { return cases_; }
     const gl::Caps& caps() const { return caps_; }
@@ -71,12 +83,17 @@ private:
     bool reduced_;
     gl::ColorTargets target_;
     std::vector<Case> cases_;
+    std::set<std::string> names_;
+    std::function<void(const Case&)> watcher_;
 };
 
 // Quantities that cases measure.
 
-/// Largest difference of any component, over the pixels that `counts` (all where it is empty).
+/// Largest difference of any component. NaN where there is one.
 double largestDifference(const Picture& picture, std::span<const glm::dvec4> reference);
+
+/// The integral without any sampling, of the scene's texels under its TF (core/reference).
+std::vector<glm::dvec4> continuousPicture(const Scene& scene, const View& view, glm::ivec2 size);
 
 /// The renderer against float64 evaluation of the very samples that it takes: worst share of the
 /// pixel's own bound (reference_picture.h: filter, float32 positions, table; and the blending's)

@@ -1,9 +1,16 @@
 #pragma once
 
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/glm.hpp>
+
+#include "core/base/error.h"
 
 namespace slabcast::stability {
 
@@ -17,6 +24,29 @@ struct NamedPicture {
     Picture picture;
 };
 
+/// A case's place in a plot of its family: y against x, a line per group; cases with the same
+/// labels share it, and panels split it.
+struct Series {
+    std::string group;
+    std::string panel; // may be empty
+    double x = 0.0;
+    double y = 0.0;
+    std::string xLabel;
+    std::string yLabel;
+};
+
+/// A line of the table of what a plan left out, with GL's word for it.
+struct LeftOut {
+    std::vector<std::string> plan; // the plan's reasons
+    int activeUniforms = 0;
+    std::vector<std::string> samplers;
+    std::int64_t fragments = 0;
+    std::int64_t layers = 0;
+    std::int64_t textureBytes = 0;
+    double frameMs = 0.0;
+    double frameMsWithAll = 0.0;
+};
+
 /// One claim that was put to the test: that `measured` stays at or below `bound`. The bound is
 /// derived before anything is drawn, from what formats, rounding and the method allow.
 struct Case {
@@ -28,8 +58,18 @@ struct Case {
     double measured = 0.0;
     std::string failure{};                // why nothing could be measured; such a case fails
     std::vector<NamedPicture> pictures{}; // few: what the page shows beside the figures
+    std::optional<Series> series{};
+    std::optional<LeftOut> leftOut{};
 
     bool pass() const { return failure.empty() && measured <= bound; } // false for NaN
 };
+
+/// "one-unit step, slicing, rgba8": the parts of a name, those that are empty left out.
+std::string named(std::initializer_list<std::string_view> parts);
+std::string number(double value); // three digits
+
+/// Fails: Internal, with how many cases exceed their bounds, and the first one's name.
+/// Tested by: stability_gl_test.cpp
+Result<void> verdict(std::span<const Case> cases);
 
 } // namespace slabcast::stability

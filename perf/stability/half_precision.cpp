@@ -1,7 +1,185 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/gl/api.h"
 #include "perf/stability/bench.h"
+#include "perf/stability/volumes.h"
 
 namespace slabcast::stability {
 
-void halfPrecisionCases(Bench& /*bench*/) {}
+namespace {
+
+constexpr double kUnit = 0x1p-11; // unit roundoff of fp16
+constexpr glm::ivec2 kSize(64, 64);
+
+struct HalfScene {
+    const char* name;
+    std::function<double(glm::ivec3)> formula; // 0 to 200
+    TransferFunction tf;
+    double layerSpacingVoxels;
+};
+
+TransferFunction rampTransfer(double least, double most) {
+    return {.name = "ramp",
+            .points = {{0.0, {0.9, 0.3, 0.1}, least}, {200.0, {0.1, 0.5, 1.0}, most}}};
+}
+
+double waves(glm::ivec3 v) {
+    return 100.0 + 99.0 * std::sin(v.x * 0.4) * std::cos(v.y * 0.3) * std::sin(v.z * 0.35 + 1.0);
+}
+
+/// Neighbouring texels of these tables are within a factor of two of each other: a bound on what
+/// rounding their interpolation does to extinction needs that.
+std::vector<HalfScene> scenes(bool reduced) {
+    std::vector<HalfScene> all = {
+        {"translucent", waves, rampTransfer(0.02, 0.2), 0.5},
+        {"opaque", waves, rampTransfer(0.5, 0.999), 1.0},
+        {"faint, 1,300 layers", waves, rampTransfer(2e-3, 4e-3), 1.0 / 16.0}};
+    if (reduced) {
+        all.resize(1);
+    }
+    return all;
+}
+
+/// What one group may do to a pixel. With T the transmittance before a layer and a its opacity, the
+/// sum of T a over a ray is its opacity A: an error of e in every layer's own share moves the pixel
+/// by e A, and by as much again through what the layers cover.
+struct Ray {
+    double layers;          // on the longest ray
+    double layersOfSegment; // at most
+    double opacity;         // A, the picture's largest
+};
+
+double opacityBound(const Ray& ray) {
+    return 2.0 * (33.0 * kUnit * ray.opacity + ray.layers * 0x1p-25);
+}
+double sumBound(const Ray& ray) {
+    return 2.0 * kUnit * (ray.layersOfSegment + 2.0) * ray.opacity;
+}
+double materialBound(const Ray& ray) {
+    return 16.0 * kUnit * ray.opacity;
+}
+double lightBound(const Ray& ray) {
+    return 16.0 * kUnit * ray.opacity;
+}
+double everyBound(const Ray& ray) {
+    return opacityBound(ray) + sumBound(ray) + materialBound(ray) + lightBound(ray);
+}
+/// Half a step of 8 bits.
+double unseenBound(const Ray& /*ray*/) {
+    return 1.0 / 510.0;
+}
+
+struct Group {
+    const char* name;
+    int bits;
+    bool shaded;
+    double (*bound)(const Ray& ray);
+    const char* reason;
+};
+
+constexpr Group kGroups[] = {
+    {"opacity", kHalfOpacity, false, opacityBound,
+     "from a depth of 1/32 on, 1 - exp(-d) is off by 2u, which is at most 33u of itself; below, "
+     "its "
+     "series by 4u of itself; and by half of fp16's smallest step: 2 (33u A + layers 2^-25)"},
+    {"sum", kHalfSum, false, sumBound,
+     "each of a segment's n layers rounds the sum once and its own share twice: u (n + 2) A, and "
+     "as "
+     "much through what the segment covers"},
+    {"material", kHalfMaterial, false, materialBound,
+     "texels within a factor of two interpolate to 6u of the extinction and 3u of the colour, "
+     "whose "
+     "product with the opacity adds u: (2 x 6u + 4u) A"},
+    {"light", kHalfLight, true, lightBound,
+     "the 32nd power makes 32u of u, a quarter of which is the highlight's share: 8u; eight more "
+     "roundings of values up to 1: 16u A"},
+    {"all", kHalfAll, true, everyBound, "the sum of the four groups' bounds"},
+    {"declared mediump (material and light)", kHalfMaterial + kHalfLight, true, unseenBound,
+     "what the shaders declare mediump must stay below half a step of 8 bits"}};
+
+/// Into float32, so that the target's own rounding does not hide the segment's.
+Result<Picture> drawn(Bench& bench, const Scene& scene, const FramePlan& plan, const View& view) {
+    gl::ColorTargets target;
+    if (Result<void> made = target.resize(kSize.x, kSize.y, {GL_RGBA32F}); !made) {
+        return tl::unexpected(made.error());
+    }
+    target.begin();
+    const ViewTarget where{view, target.framebuffer(), {0, 0, kSize.x, kSize.y}};
+    if (Result<void> ready = bench.renderer().prepare(scene, plan); !ready) {
+        return tl::unexpected(ready.error());
+    }
+    if (Result<void> done = bench.renderer().draw(scene, plan, {&where, 1}); !done) {
+        return tl::unexpected(done.error());
+    }
+    return Picture{kSize, target.read()};
+}
+
+void measure(Bench& bench, const Scene& scene, const HalfScene& setup, const Group& group,
+             const Method& method) {
+    Settings settings = settingsOf(method);
+    settings.layerSpacingVoxels = setup.layerSpacingVoxels;
+    settings.form = SegmentForm::Loop;
+    settings.shaded = group.shaded;
+    const std::string methodName = method.name;
+    Case result{.family = "half-precision",
+                .name = std::string(group.name) + ", " + setup.name + ", " +
+                        methodName.substr(0, methodName.find(',')),
+                .quantity = "largest difference from float32, of full scale",
+                .reason = std::string(group.reason) + "; u = 2^-11, A the largest opacity"};
+    const View view = orbitView(scene, {30.0, 20.0, 2.5}, 40.0, kSize);
+    const Result<FramePlan> plan = bench.plan(scene, settings);
+    if (!plan) {
+        return bench.recordFailure(result, plan.error());
+    }
+    FramePlan rounded = *plan;
+    rounded.variant.halfGroups = group.bits;
+    const Result<Picture> exact = drawn(bench, scene, *plan, view);
+    const Result<Picture> half = drawn(bench, scene, rounded, view);
+    if (!exact || !half) {
+        return bench.recordFailure(result, exact ? half.error() : exact.error());
+    }
+    const std::vector<glm::dvec4> meant(exact->pixels.begin(), exact->pixels.end());
+    Ray ray{.layers = double(plan->lattice.total),
+            .layersOfSegment = double(plan->layersPerPlane),
+            .opacity = 0.0};
+    for (const glm::dvec4& pixel : meant) {
+        ray.opacity = std::max(ray.opacity, pixel.a);
+    }
+    result.measured = largestDifference(*half, meant);
+    result.bound = group.bound(ray);
+    result.pictures = {{"float32", *exact}, {"fp16", *half}};
+    bench.record(std::move(result));
+}
+
+} // namespace
+
+void halfPrecisionCases(Bench& bench) {
+    if (!bench.caps().floatBlend) {
+        return bench.recordFailure(
+            {.family = "half-precision", .name = "float32 target"},
+            {ErrorCode::DeviceUnsupported, "this device does not blend float32 targets"});
+    }
+    for (const HalfScene& setup : scenes(bench.reduced())) {
+        const Volume volume = formulaVolume(glm::ivec3(48), VoxelType::U8, setup.formula);
+        for (const Group& group : kGroups) {
+            Look look{.tf = setup.tf};
+            if (group.shaded) {
+                look.shading = ShadingParameters{};
+            }
+            const Result<Scene> scene = bench.scene(volume, look, {SkipStructure::None});
+            if (!scene) {
+                bench.recordFailure({.family = "half-precision", .name = setup.name},
+                                    scene.error());
+                continue;
+            }
+            for (const Method& method : methods()) {
+                if (method.target == TargetFormat::Rgba16f) {
+                    measure(bench, *scene, setup, group, method);
+                }
+            }
+        }
+    }
+}
 
 } // namespace slabcast::stability

@@ -36,9 +36,24 @@ TableSpread lookUpAround(const TransferTable& table, double value, double error)
         return std::clamp((v - table.firstValue) / texel, 0.0, last);
     };
     for (double k = std::ceil(texelAt(value - reach)); k <= texelAt(value + reach); k += 1.0) {
-        include(glm::dvec4(table.texels[static_cast<std::size_t>(k)]));
+        include(lookUp(table, table.firstValue + k * texel));
     }
     return result;
+}
+
+/// A value that may be off by `error`, the ends of what it may be, and the texels between.
+std::vector<double> valuesAround(const TransferTable& axis, double value, double error) {
+    const double last = double(axis.texels.size()) - 1.0;
+    const double texel = (axis.lastValue - axis.firstValue) / last;
+    const double reach = error + texel * (1.0 / 256.0 + last * 0x1p-22);
+    std::vector<double> values = {value, value - reach, value + reach};
+    const auto texelAt = [&](double v) {
+        return std::clamp((v - axis.firstValue) / texel, 0.0, last);
+    };
+    for (double k = std::ceil(texelAt(value - reach)); k <= texelAt(value + reach); k += 1.0) {
+        values.push_back(axis.firstValue + k * texel);
+    }
+    return values;
 }
 
 /// Trilinear over 8 corners of any type with range.
@@ -118,9 +133,11 @@ ReferencePicture::Ray ReferencePicture::rayOf(glm::dvec2 fragCoord) const {
                              glm::abs(frame_.centreY) * p.y +
                              directionTerms * (frame_.spacing * total);
     result.uvwError = terms * 0x1p-22;
-    const double nearError =
-        (std::abs(frame_.sphereCentre.z) + frame_.nearDepth) / frame_.spacing * 0x1p-21;
-    result.entryError = result.exitError = total * 0x1p-21 + nearError;
+    result.entryError = result.exitError = total * 0x1p-21;
+    if (frame_.sphereCentre.z - frame_.radius <= frame_.nearDepth) { // else it cuts nothing
+        result.entryError +=
+            (std::abs(frame_.sphereCentre.z) + frame_.nearDepth) / frame_.spacing * 0x1p-21;
+    }
     for (int k = 0; k < 3; ++k) {
         const double error = result.uvwError[k] / std::max(std::abs(ray.step[k]), 1e-300);
         const double a = (0.0 - ray.centre[k]) / ray.step[k];
@@ -246,6 +263,55 @@ ReferencePicture::Layer ReferencePicture::preClassified(glm::dvec3 uvw, const Ra
             spread(alpha) + 0x1p-22};
 }
 
+ReferencePicture::Layer ReferencePicture::preIntegrated(int index, const Ray& ray,
+                                                        glm::dvec3 lengths) const {
+    const PreintegratedTable& table = *scene_.preintegrated();
+    const double half = plan_.lattice.total / 2.0;
+    const glm::dvec3 endError =
+        ray.uvwError + glm::abs(ray.ray.step) * std::max(ray.entryError, ray.exitError);
+    const auto valuesAt = [&](int boundary) {
+        const double lattice = boundary - half;
+        const double offset = std::clamp(lattice, ray.ray.entry, ray.ray.exit);
+        const bool nearEnd =
+            lattice < ray.ray.entry + ray.entryError || lattice > ray.ray.exit - ray.exitError;
+        const Field field =
+            fieldAt(ray.ray.centre + offset * ray.ray.step, nearEnd ? endError : ray.uvwError);
+        return valuesAround(table.diagonal, field.value, field.error);
+    };
+    const auto colorOf = [&](double front, double back, double lengthMm) {
+        const glm::dvec4 mean = lookUp(table, front, back);
+        const double alpha = 1.0 - std::exp(-mean.w * lengthMm);
+        return glm::dvec4(mean.w > 0.0 ? glm::dvec3(mean) * (alpha / mean.w) : glm::dvec3(0.0),
+                          alpha);
+    };
+    const std::vector<double> fronts = valuesAt(index);
+    const std::vector<double> backs = valuesAt(index + 1);
+    const glm::dvec4 meant = colorOf(fronts[0], backs[0], lengths.y);
+    glm::dvec4 error(0.0);
+    for (const double front : fronts) {
+        for (const double back : backs) {
+            for (const double length : {lengths.x, lengths.z}) {
+                error = glm::max(error, glm::abs(colorOf(front, back, length) - meant));
+            }
+        }
+    }
+    return {meant, std::max({error.x, error.y, error.z}) + 0x1p-22, error.w + 0x1p-22};
+}
+
+ReferencePicture::Layer ReferencePicture::classified(int index, const Ray& ray,
+                                                     glm::dvec3 lengths) const {
+    const glm::dvec3 uvw = samplePosition(ray.ray, plan_.lattice.total, index);
+    switch (plan_.variant.classification) {
+    case Classification::Post:
+        return postClassified(uvw, ray, lengths);
+    case Classification::Pre:
+        return preClassified(uvw, ray, lengths);
+    case Classification::Preintegrated:
+        break;
+    }
+    return preIntegrated(index, ray, lengths);
+}
+
 PixelReference ReferencePicture::at(glm::dvec2 fragCoord) const {
     const Ray ray = rayOf(fragCoord);
     const double slack = ray.entryError + ray.exitError;
@@ -269,10 +335,7 @@ PixelReference ReferencePicture::at(glm::dvec2 fragCoord) const {
         if (lengths.z == 0.0) {
             continue;
         }
-        const glm::dvec3 uvw = samplePosition(ray.ray, total, i);
-        const bool pre = plan_.variant.classification == Classification::Pre;
-        const Layer layer =
-            pre ? preClassified(uvw, ray, lengths) : postClassified(uvw, ray, lengths);
+        const Layer layer = classified(i, ray, lengths);
         result.bound += clearest * (layer.colorError + layer.alphaError);
         result.color += (1.0 - result.color.a) * layer.color;
         clearest *= 1.0 - std::max(0.0, layer.color.a - layer.alphaError);

@@ -1,7 +1,11 @@
-#include "perf/stability/bench.h"
+#include "perf/stability/stiff.h"
 
 namespace slabcast::stability {
 
-void stiffCases(Bench& /*bench*/) {}
+void stiffCases(Bench& bench) {
+    stiffTransferCases(bench);
+    stiffMediumCases(bench);
+    stiffDataCases(bench);
+}
 
 } // namespace slabcast::stability

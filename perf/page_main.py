@@ -1,0 +1,46 @@
+"""From a folder of measurements to its page: what all page makers do alike."""
+
+import os
+import sys
+import tempfile
+from importlib import import_module
+from pathlib import Path
+
+from page_input import BadInput
+
+
+def write_whole(path, text):
+    """All of the file or nothing of it: a reader never meets half a page."""
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(text)
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, path)
+    except BaseException:
+        os.unlink(temporary)
+        raise
+
+
+def main(usage, arguments, load, page_module):
+    """Writes DIR/report.html with `page(load(DIR))` of the module and prints its path. The exit status."""
+    if len(arguments) != 1 or arguments[0].startswith("-"):
+        print(usage.strip(), file=sys.stderr)
+        return 2
+    folder = Path(arguments[0])
+    program = Path(sys.argv[0]).stem
+    try:
+        measured = load(folder)
+        # matplotlib loads slowly: not before the input is known to be good
+        write_whole(folder / "report.html", import_module(page_module).page(measured))
+    except BadInput as error:
+        print(f"{program}: {error}", file=sys.stderr)
+        return 1
+    except ImportError as error:
+        print(f"{program}: {error}; install python3-matplotlib and run with /usr/bin/python3", file=sys.stderr)
+        return 1
+    except OSError as error:
+        print(f"{program}: {error.filename or folder}: {error.strerror}; check the folder", file=sys.stderr)
+        return 1
+    print(folder / "report.html")
+    return 0

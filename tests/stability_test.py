@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+"""`slabcast stability`, reduced, as a process: exit status, report, and what it refuses.
+
+usage: stability_test.py SLABCAST [arguments of unittest]
+"""
+
+import csv
+import json
+import math
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SLABCAST = None  # the program, from the command line
+KEYS = {"family", "name", "quantity", "bound", "reason", "measured", "pass"}
+OPTIONAL_KEYS = {"failure", "pictures", "series", "leftOut"}
+FAMILIES = ["stiff", "extreme-data", "extreme-views", "extreme-plans", "in-time", "half-precision", "left-out"]
+METHODS = [f"{way}, {target}" for target in ("rgba8", "rgba16f") for way in ("slicing", "hybrid", "ray casting")]
+
+
+def stability(*arguments):
+    return subprocess.run([SLABCAST, "stability", *map(str, arguments)], capture_output=True, text=True, timeout=300)
+
+
+class ReducedRunTest(unittest.TestCase):
+    """One reduced run of every family, made once."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = Path(tempfile.mkdtemp(prefix="slabcast_stability_"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.run_ = stability("--reduced", "--out", cls.folder)
+        cls.report = json.loads((cls.folder / "stability.json").read_text())
+        cls.cases = cls.report["cases"]
+
+    def test_every_case_keeps_its_bound(self):
+        exceeding = [f"{c['name']}: {c['measured']} > {c['bound']} {c.get('failure', '')}"
+                     for c in self.cases if not c["pass"]]
+        self.assertEqual(exceeding, [])
+        self.assertEqual(self.run_.returncode, 0, self.run_.stderr)
+
+    def test_pass_is_what_measured_and_bound_say(self):
+        for case in self.cases:
+            measured = case["measured"] if case["measured"] is not None else math.nan
+            self.assertEqual(case["pass"], measured <= case["bound"] and "failure" not in case, case["name"])
+
+    def test_there_are_a_hundred_cases_in_all_families(self):
+        self.assertGreaterEqual(len(self.cases), 100)
+        self.assertEqual([f["name"] for f in self.report["families"]], FAMILIES)
+        self.assertEqual({c["family"] for c in self.cases}, set(FAMILIES))
+
+    def test_every_method_is_put_to_the_test(self):
+        names = [c["name"] for c in self.cases if c["family"] == "stiff"]
+        for method in METHODS:
+            self.assertTrue(any(name.endswith(method) for name in names), method)
+
+    def test_names_are_unique(self):
+        names = [c["name"] for c in self.cases]
+        self.assertEqual(len(names), len(set(names)))
+
+    def test_keys(self):
+        self.assertLessEqual({"command", "commit", "date", "device", "reduced", "seconds"}, set(self.report))
+        self.assertTrue(self.report["reduced"])
+        for case in self.cases:
+            self.assertLessEqual(KEYS, set(case), case["name"])
+            self.assertLessEqual(set(case), KEYS | OPTIONAL_KEYS, case["name"])
+            for key in ("quantity", "reason"):
+                self.assertTrue(case[key].strip(), case["name"])
+
+    def test_pictures_are_files(self):
+        files = [p["file"] for c in self.cases for p in c.get("pictures", [])]
+        self.assertTrue(files)
+        self.assertEqual(len(files), len(set(files)))
+        for file in files:
+            self.assertEqual((self.folder / file).read_bytes()[:8], b"\x89PNG\r\n\x1a\n", file)
+
+    def test_table_has_a_line_per_case(self):
+        with open(self.folder / "stability.csv", newline="", encoding="utf-8") as table:
+            rows = list(csv.DictReader(table))
+        self.assertEqual([r["name"] for r in rows], [c["name"] for c in self.cases])
+        self.assertEqual({r["pass"] for r in rows}, {"true"})
+
+    def test_page_is_there(self):
+        page = (self.folder / "report.html").read_text(encoding="utf-8")
+        self.assertIn("</html>", page)
+
+
+class RefusalTest(unittest.TestCase):
+    def refuses(self, run, cause):
+        self.assertEqual(run.returncode, 1, run.stderr)
+        self.assertRegex(run.stderr, rf"\Aslabcast: [^\n]*{cause}[^\n]*\n\Z")
+
+    def test_family_that_is_none(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder) / "out"
+            self.refuses(stability("--family", "stif", "--out", out), "stif: no family.*give one of stiff")
+            self.assertFalse(out.exists())
+
+    def test_folder_that_cannot_be_made(self):
+        with tempfile.NamedTemporaryFile() as file:
+            self.refuses(stability("--out", Path(file.name) / "out"), "cannot make this folder")
+
+
+if __name__ == "__main__":
+    SLABCAST = sys.argv.pop(1)
+    unittest.main()
