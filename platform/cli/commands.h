@@ -7,6 +7,8 @@ namespace slabcast {
 Result<void> renderCommand(const RenderOptions& options);
 /// `command`: as it was typed, for the report.
 Result<void> sweepCommand(const SweepOptions& options, const std::string& command);
+Result<void> stabilityCommand(const StabilityOptions& options, const std::string& command);
+Result<void> errorCommand(const ErrorOptions& options, const std::string& command);
 Result<void> infoCommand(const InputOptions& options);
 Result<void> deviceCommand();
 

@@ -44,30 +44,47 @@ Result<Stage> Stage::open(const SceneOptions& options) {
     if (!tf) {
         return tl::unexpected(tf.error());
     }
-    const Settings& s = options.settings;
-    Look look{.tf = std::move(*tf), .space = s.space, .classification = s.classification};
-    if (s.shaded) {
-        look.shading = ShadingParameters{};
-    }
-    const BoundingSphere sphere = loaded->scene.geometry().boundingSphere();
-    // Towards the eye: a baked head light stands where the eye is at the first frame.
-    const glm::dmat3 rotation(viewFromModel(options.camera, sphere));
-    look.bakedLightDirection = glm::transpose(rotation) * glm::dvec3(0.0, 0.0, 1.0);
-    const bool needsCloud =
-        s.tighten || s.skip.value_or(SkipStructure::Proximity) == SkipStructure::Proximity;
-    const SkipOptions skip{needsCloud ? SkipStructure::Proximity : SkipStructure::None,
-                           options.skipBlockEdge};
-    const int maxTable =
-        static_cast<int>(std::min<std::int64_t>(4096, session->caps.maxTextureSize));
-    progress.show("finding what the transfer function makes visible");
-    if (Result<void> set = loaded->scene.setLook(look, skip, maxTable); !set) {
-        return tl::unexpected(set.error());
-    }
     Result<Renderer> renderer = Renderer::create(session->caps);
     if (!renderer) {
         return tl::unexpected(renderer.error());
     }
-    return Stage(options, std::move(*session), std::move(*loaded), std::move(*renderer));
+    Stage stage(options, std::move(*session), std::move(*loaded), std::move(*renderer));
+    if (Result<void> set = stage.setLook(std::move(*tf), options.settings.classification); !set) {
+        return tl::unexpected(set.error());
+    }
+    return stage;
+}
+
+Result<void> Stage::setLook(TransferFunction tf, Classification classification) {
+    const Progress progress("finding what the transfer function makes visible");
+    const Settings& s = options_.settings;
+    Look look{.tf = std::move(tf), .space = s.space, .classification = classification};
+    if (s.shaded) {
+        look.shading = ShadingParameters{};
+    }
+    // Towards the eye: a baked head light stands where the eye is at the first frame.
+    const glm::dmat3 rotation(viewFromModel(options_.camera, scene().geometry().boundingSphere()));
+    look.bakedLightDirection = glm::transpose(rotation) * glm::dvec3(0.0, 0.0, 1.0);
+    const bool needsCloud =
+        s.tighten || s.skip.value_or(SkipStructure::Proximity) == SkipStructure::Proximity;
+    const SkipOptions skip{needsCloud ? SkipStructure::Proximity : SkipStructure::None,
+                           options_.skipBlockEdge};
+    const int maxTable =
+        static_cast<int>(std::min<std::int64_t>(4096, session_.caps.maxTextureSize));
+    return loaded_.scene.setLook(look, skip, maxTable);
+}
+
+Result<void> Stage::reclassify(Classification classification) {
+    if (scene().look().classification == classification) {
+        return {};
+    }
+    const Result<MemoryForecast> forecast =
+        checkMemory(info(), scene().texels().format, classification, options_.input, session_.caps);
+    if (!forecast) {
+        return tl::unexpected(forecast.error());
+    }
+    loaded_.info.forecast = *forecast;
+    return setLook(scene().look().tf, classification);
 }
 
 Result<FramePlan> Stage::decide(const Settings& settings) {
@@ -120,6 +137,10 @@ Result<double> Stage::drawTimed(const FramePlan& plan, double turnDegrees) {
                                       : linearFromSrgb(*options_.background);
         clear = glm::vec4(glm::dvec4(stored, 1.0));
     }
+    return drawOn(clear, plan, turnDegrees);
+}
+
+Result<double> Stage::drawOn(glm::vec4 clear, const FramePlan& plan, double turnDegrees) {
     target_.begin(clear);
     gl::Finish();
     const auto start = std::chrono::steady_clock::now();
@@ -130,6 +151,14 @@ Result<double> Stage::drawTimed(const FramePlan& plan, double turnDegrees) {
     gl::Finish();
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
         .count();
+}
+
+Result<std::vector<glm::dvec4>> Stage::drawOnNothing(const FramePlan& plan) {
+    if (const Result<double> drawn = drawOn(glm::vec4(0.0F), plan, 0.0); !drawn) {
+        return tl::unexpected(drawn.error());
+    }
+    const std::vector<glm::vec4> pixels = target_.read();
+    return std::vector<glm::dvec4>(pixels.begin(), pixels.end());
 }
 
 Result<WorkCounters> Stage::countWork(const FramePlan& plan) {
@@ -176,7 +205,7 @@ nlohmann::json toJson(const gl::Caps& caps) {
 nlohmann::json toJson(const VolumeInfo& info) {
     return {{"name", info.name},
             {"dims", {info.dims.x, info.dims.y, info.dims.z}},
-            {"type", info.type},
+            {"type", name(info.type)},
             {"unit", info.unit},
             {"spacingMm", {info.spacingMm.x, info.spacingMm.y, info.spacingMm.z}},
             {"bytes", info.bytes}};

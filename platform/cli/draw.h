@@ -15,6 +15,9 @@ public:
     /// Opens device and volume, applies the look.
     static Result<Stage> open(const SceneOptions& options);
 
+    /// Classifies anew, under the same transfer function.
+    Result<void> reclassify(Classification classification);
+
     /// Decides the plan; measures ratios first where the settings leave the ratio open.
     Result<FramePlan> decide(const Settings& settings);
 
@@ -25,14 +28,23 @@ public:
     /// in ms until the GPU has finished.
     Result<double> drawTimed(const FramePlan& plan, double turnDegrees);
 
+    /// Draws on nothing: what is there in the compositing space, premultiplied, rows from the
+    /// bottom.
+    Result<std::vector<glm::dvec4>> drawOnNothing(const FramePlan& plan);
+
     Result<WorkCounters> countWork(const FramePlan& plan);
 
     /// The picture, top row first, over the background: sRGB-encoded if `encoded`, else light.
     /// Alpha 1 unless the background is transparent, then not premultiplied if encoded.
     std::vector<glm::vec4> picture(bool encoded) const;
 
+    /// Where each eye looks, and its place in the picture.
+    std::vector<ViewTarget> views(double turnDegrees) const;
+
     const Scene& scene() const { return loaded_.scene; }
     const VolumeInfo& info() const { return loaded_.info; }
+    /// The volume's own values. Contract: InputOptions::keepValues.
+    const Texels& values() const { return *loaded_.values; }
     const Session& session() const { return session_; }
     Renderer& renderer() { return renderer_; }
 
@@ -41,7 +53,8 @@ private:
         : options_(std::move(options)), session_(std::move(session)), loaded_(std::move(loaded)),
           renderer_(std::move(renderer)) {}
 
-    std::vector<ViewTarget> views(double turnDegrees) const;
+    Result<void> setLook(TransferFunction tf, Classification classification);
+    Result<double> drawOn(glm::vec4 clear, const FramePlan& plan, double turnDegrees);
 
     SceneOptions options_;
     Session session_;

@@ -52,6 +52,14 @@ int run(int argc, char** argv) {
     bindSweep(*add("sweep", "Measures the planes to layers ratio, with and without skipping",
                    [&] { return sweepCommand(sweep, commandLine(argc, argv)); }),
               sweep);
+    StabilityOptions stability;
+    bindStability(*add("stability", "Puts the renderer through stiff and extreme cases",
+                       [&] { return stabilityCommand(stability, commandLine(argc, argv)); }),
+                  stability);
+    ErrorOptions error;
+    bindError(*add("error", "Measures the error of pictures against the time that they take",
+                   [&] { return errorCommand(error, commandLine(argc, argv)); }),
+              error);
     InputOptions info;
     bindInfo(*add("info", "Tells what a volume is and what drawing it takes",
                   [&] { return infoCommand(info); }),

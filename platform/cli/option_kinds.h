@@ -41,15 +41,12 @@ struct NumberOf<std::optional<T>> {
     using Type = T;
 };
 
-/// A number from `low` to `high`, so never NaN or infinite. `value` may be an optional.
+/// Of a number from `low` to `high`, so never NaN or infinite.
 template <class T, class Number = typename NumberOf<T>::Type>
-CLI::Option* addNumber(CLI::App& command, const std::string& flag, T& value,
-                       std::type_identity_t<Number> low, std::type_identity_t<Number> high,
-                       const std::string& help) {
-    constexpr bool isWhole = std::is_integral_v<Number>;
-    const auto parse = [=](const std::string& word) -> std::optional<T> {
+Parser<T> numberParser(Number low, Number high) {
+    return [=](const std::string& word) -> std::optional<T> {
         const auto number = [&]() {
-            if constexpr (isWhole) {
+            if constexpr (std::is_integral_v<Number>) {
                 return parseInteger(word);
             } else {
                 return parseReal(word);
@@ -58,25 +55,44 @@ CLI::Option* addNumber(CLI::App& command, const std::string& flag, T& value,
         const bool inRange = number && *number >= low && *number <= high;
         return inRange ? std::optional<T>(static_cast<Number>(*number)) : std::nullopt;
     };
-    const auto needed =
-        fmt::format("a {} from {} to {}", isWhole ? "whole number" : "number", low, high);
-    return addParsed<T>(command, flag, value, parse, needed, help);
+}
+
+/// A number from `low` to `high`. `value` may be an optional.
+template <class T, class Number = typename NumberOf<T>::Type>
+CLI::Option* addNumber(CLI::App& command, const std::string& flag, T& value,
+                       std::type_identity_t<Number> low, std::type_identity_t<Number> high,
+                       const std::string& help) {
+    const auto needed = fmt::format(
+        "a {} from {} to {}", std::is_integral_v<Number> ? "whole number" : "number", low, high);
+    return addParsed<T>(command, flag, value, numberParser<T>(low, high), needed, help);
 }
 
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;
 
-/// An option whose words stand for values. What `value` is now is the default.
 template <class T>
-CLI::Option* addChoice(CLI::App& command, const std::string& flag, T& value,
-                       const Choices<std::type_identity_t<T>>& choices, const std::string& help) {
-    std::vector<std::string> choiceWords;
-    std::string initial;
-    for (const auto& [word, meaning] : choices) {
-        choiceWords.push_back(word);
-        initial = meaning == value ? word : initial;
+std::string wordsOf(const Choices<T>& choices, const char* separator) {
+    std::string all;
+    for (const auto& choice : choices) {
+        all += (all.empty() ? "" : separator) + choice.first;
     }
-    const auto parse = [choices](const std::string& word) -> std::optional<T> {
+    return all;
+}
+
+/// Empty where no word means `value`.
+template <class T>
+std::string wordFor(const Choices<T>& choices, const T& value) {
+    for (const auto& [word, meaning] : choices) {
+        if (meaning == value) {
+            return word;
+        }
+    }
+    return {};
+}
+
+template <class T>
+Parser<T> choiceParser(const Choices<T>& choices) {
+    return [choices](const std::string& word) -> std::optional<T> {
         for (const auto& [known, meaning] : choices) {
             if (known == word) {
                 return std::optional<T>(std::in_place, meaning);
@@ -84,10 +100,35 @@ CLI::Option* addChoice(CLI::App& command, const std::string& flag, T& value,
         }
         return std::nullopt;
     };
-    const auto needed = fmt::format("one of {}", fmt::join(choiceWords, ", "));
-    return addParsed<T>(command, flag, value, parse, needed, help)
-        ->type_name(fmt::format("{}", fmt::join(choiceWords, "|")))
-        ->default_str(initial);
+}
+
+/// An option whose words stand for values. What `value` is now is the default.
+template <class T>
+CLI::Option* addChoice(CLI::App& command, const std::string& flag, T& value,
+                       const Choices<std::type_identity_t<T>>& choices, const std::string& help) {
+    const auto needed = fmt::format("one of {}", wordsOf(choices, ", "));
+    return addParsed<T>(command, flag, value, choiceParser(choices), needed, help)
+        ->type_name(wordsOf(choices, "|"))
+        ->default_str(wordFor(choices, value));
+}
+
+/// An option of several values with commas between. `needed`: what each of them may be.
+template <class T>
+CLI::Option* addList(CLI::App& command, const std::string& flag, std::vector<T>& values,
+                     Parser<T> parse, const std::string& needed, const std::string& help) {
+    const auto parseAll = [=](const std::string& word) -> std::optional<std::vector<T>> {
+        std::vector<T> parsed;
+        for (const std::string_view part : split(word, ',')) {
+            std::optional<T> one = parse(std::string(part));
+            if (!one) {
+                return std::nullopt;
+            }
+            parsed.push_back(*std::move(one));
+        }
+        return parsed;
+    };
+    return addParsed<std::vector<T>>(command, flag, values, parseAll,
+                                     needed + " with commas between", help);
 }
 
 } // namespace slabcast

@@ -3,238 +3,79 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include "core/volume/phantoms.h"
-#include "platform/cli/option_kinds.h"
-#include "platform/io/transfer_json.h"
+#include "platform/cli/scene_options.h"
 
 namespace slabcast {
 
 namespace {
 
-constexpr int kMaxLayers = 1 << 20;
-constexpr int kMaxEdge = 16384;
-constexpr double kMaxDistanceRadii = 1e6; // rays are right up to here
-
-std::optional<OrbitCamera> parseCamera(const std::string& word) {
-    const auto parts = split(word, ',');
-    if (parts.size() != 3) {
-        return std::nullopt;
-    }
-    const auto azimuth = parseReal(parts[0]);
-    const auto elevation = parseReal(parts[1]);
-    const auto distance = parseReal(parts[2]);
-    const auto isAngle = [](std::optional<double> degrees) {
-        return degrees && std::abs(*degrees) <= 360.0;
-    };
-    if (!isAngle(azimuth) || !isAngle(elevation) || !distance ||
-        !(*distance >= 0.0 && *distance <= kMaxDistanceRadii)) {
-        return std::nullopt;
-    }
-    return OrbitCamera{*azimuth, *elevation, *distance};
-}
-
-std::optional<glm::ivec2> parseSize(const std::string& word) {
-    const auto parts = split(word, 'x');
-    if (parts.size() != 2) {
-        return std::nullopt;
-    }
-    const auto width = parseInteger(parts[0]);
-    const auto height = parseInteger(parts[1]);
-    const auto isEdge = [](std::optional<std::int64_t> edge) {
-        return edge && *edge >= 1 && *edge <= kMaxEdge;
-    };
-    return isEdge(width) && isEdge(height) ? std::optional(glm::ivec2(*width, *height))
-                                           : std::nullopt;
-}
-
-/// Nothing where it cannot be read; a nothing within where there is to be no background.
-std::optional<std::optional<glm::dvec3>> parseBackground(const std::string& word) {
-    if (word == "none") {
-        return std::optional<glm::dvec3>();
-    }
-    if (word.size() != 6 || word.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos) {
-        return std::nullopt;
-    }
-    const unsigned long rgb = std::stoul(word, nullptr, 16);
-    return glm::dvec3(rgb >> 16 & 255U, rgb >> 8 & 255U, rgb & 255U) / 255.0;
-}
-
-std::optional<std::optional<double>> parseTermination(const std::string& word) {
-    if (word == "off") {
-        return std::optional<double>();
-    }
-    const auto opacity = parseReal(word);
-    if (!opacity || !(*opacity > 0.0 && *opacity <= 1.0)) {
-        return std::nullopt;
-    }
-    return opacity;
-}
-
-std::optional<std::vector<int>> parseCounts(const std::string& word) {
-    std::vector<int> counts;
-    for (const std::string_view part : split(word, ',')) {
-        const auto count = parseInteger(part);
-        if (!count || *count < 0 || *count > kMaxLayers) {
-            return std::nullopt;
-        }
-        counts.push_back(static_cast<int>(*count));
-    }
-    return counts;
-}
-
-std::string phantomNames() {
-    std::vector<std::string> names;
-    for (const PhantomInfo& phantom : phantomList()) {
-        names.push_back(phantom.name);
-    }
-    return fmt::format("{}", fmt::join(names, ", "));
-}
-
-void bindInput(CLI::App& command, InputOptions& o) {
-    command
-        .add_option("VOLUME", o.volume,
-                    fmt::format("a file (NRRD, NIfTI, MetaImage, TIFF), a folder (DICOM, images), "
-                                "or phantom:NAME[:SIZE] "
-                                "with a NAME of {} and a SIZE as 128 or 256x256x64",
-                                phantomNames()))
-        ->required();
-    const auto group = "Volume";
-    command
-        .add_option("--series", o.series, "the DICOM series to take, where a folder holds several")
-        ->type_name("UID")
-        ->group(group);
-    command
-        .add_option("--raw", o.raw,
-                    "layout of a file without header, as 256x256x128,uint16,1x1x1.5")
-        ->type_name("DIMS,TYPE,SPACING")
-        ->group(group);
-    addNumber(command, "--downsample", o.downsample, 1, 1024,
-              "average blocks of N voxels along each axis")
-        ->type_name("N")
-        ->default_str("1")
-        ->group(group);
-}
-
-/// How the volume lies on the GPU.
-void bindTexture(CLI::App& command, InputOptions& o) {
-    const auto group = "Volume";
-    command
-        .add_flag(
-            "--exact", o.exact,
-            "keep every voxel exactly: 8 fetches per sample instead of the texture unit's filter")
-        ->group(group);
-    addNumber(command, "--gpu-budget", o.gpuBudgetMib, 0.001, 1e9,
-              "refuse a volume whose texture takes more, and name the --downsample that fits")
-        ->type_name("MIB")
-        ->default_str("what the device can")
-        ->group(group);
-}
-
-void bindCamera(CLI::App& command, SceneOptions& o) {
-    const auto group = "Picture and camera";
-    addParsed<glm::ivec2>(command, "--size", o.size, parseSize,
-                          fmt::format("WIDTHxHEIGHT in pixels, each from 1 to {}", kMaxEdge),
-                          "in pixels")
-        ->type_name("WxH")
-        ->default_str(fmt::format("{}x{}", o.size.x, o.size.y))
-        ->group(group);
-    addParsed<OrbitCamera>(
-        command, "--camera", o.camera, parseCamera,
-        "AZ,EL,DIST: two angles from -360 to 360 degrees and a distance from 0 to 1e6",
-        "azimuth and elevation in degrees, distance in bounding-sphere radii; azimuth 0 sees the "
-        "face")
-        ->type_name("AZ,EL,DIST")
-        ->default_str(fmt::format("{:g},{:g},{:g}", o.camera.azimuthDegrees,
-                                  o.camera.elevationDegrees, o.camera.distanceRadii))
-        ->group(group);
-    addNumber(command, "--fov", o.fovDegrees, 0.01, 179.0, "vertical field of view in degrees")
-        ->type_name("DEG")
-        ->default_str(fmt::format("{:g}", o.fovDegrees))
-        ->group(group);
-    addNumber(command, "--stereo", o.stereoIpdMm, 0.0, 1e6,
-              "two eyes this far apart, side by side, each of half the width; 63 for people")
-        ->type_name("IPD_MM")
-        ->default_str("off")
-        ->group(group);
-    addParsed<std::optional<glm::dvec3>>(
-        command, "--background", o.background, parseBackground, "RRGGBB in hexadecimal, or none",
-        "what is behind the volume, or none for a transparent picture")
-        ->type_name("RRGGBB|none")
-        ->default_str("000000")
-        ->group(group);
-}
-
-void bindLook(CLI::App& command, SceneOptions& o) {
-    Settings& s = o.settings;
-    const auto group = "Look";
-    command
-        .add_option("--tf", o.tf,
-                    fmt::format("transfer function: a .json file or a preset, one of {}",
-                                fmt::join(presetNames(), ", ")))
-        ->type_name("NAME|FILE")
-        ->default_str("by modality and range")
-        ->group(group);
-    addChoice(command, "--classify", s.classification,
-              {{"post", Classification::Post}, {"preclassified", Classification::Pre}},
-              "look colours up after filtering voxels, or filter colours")
-        ->group(group);
-    addChoice(command, "--shade", s.shaded, {{"off", false}, {"phong", true}},
-              "Blinn-Phong with a head light")
-        ->group(group);
-    addChoice(command, "--space", s.space,
-              {{"display", CompositingSpace::Display}, {"linear", CompositingSpace::Linear}},
-              "blend encoded values as most viewers do, or light")
-        ->group(group);
-    addChoice(command, "--target", s.target,
-              {{"rgba8", TargetFormat::Rgba8}, {"rgba16f", TargetFormat::Rgba16f}},
-              "what planes are blended into")
-        ->group(group);
-}
-
-void bindLayers(CLI::App& command, SceneOptions& o) {
-    Settings& s = o.settings;
-    const auto group = "Layers, planes and skipping";
-    addNumber(command, "--layer-spacing", s.layerSpacingVoxels, 0.001, 1e6,
-              "distance of layers in units of the smallest voxel edge")
-        ->type_name("VOXELS")
-        ->default_str(fmt::format("{:g}", s.layerSpacingVoxels))
-        ->group(group);
-    addChoice(command, "--lattice", s.lattice,
-              {{"planar", LatticeKind::Planar}, {"shells", LatticeKind::Shells}},
-              "layers at equal depth, or at equal distance from the eye")
-        ->group(group);
-    addChoice(command, "--form", s.form,
-              {{"auto", SegmentForm::Auto},
-               {"unrolled", SegmentForm::Unrolled},
-               {"loop", SegmentForm::Loop}},
-              "segments written out layer by layer, or as a loop; auto goes by device and length")
-        ->group(group);
-    addChoice(command, "--skip", s.skip,
-              {{"auto", std::nullopt},
-               {"none", SkipStructure::None},
-               {"proximity", SkipStructure::Proximity}},
-              "how empty space is skipped; never changes the picture; auto goes by what is visible")
-        ->group(group);
-    addChoice(command, "--skip-block", o.skipBlockEdge, {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}},
-              "edge of the skip structure's blocks in voxels")
-        ->group(group);
-    addChoice(command, "--tighten", s.tighten, {{"on", true}, {"off", false}},
-              "planes as rectangles around what is visible in their slab, or the sphere's 10-gons")
-        ->group(group);
-    addParsed<std::optional<double>>(command, "--termination", s.termination, parseTermination,
-                                     "an opacity above 0 and up to 1, or off",
-                                     "opacity at which a segment is left, or off")
-        ->type_name("A|off")
-        ->default_str(fmt::format("{:.4f}", s.termination.value_or(1.0)))
-        ->group(group);
-}
-
 void bindScene(CLI::App& command, SceneOptions& o) {
     bindInput(command, o.input);
     bindTexture(command, o.input);
     bindCamera(command, o);
+    bindEyes(command, o);
     bindLook(command, o);
-    bindLayers(command, o);
+    bindSampling(command, o.settings);
+    bindStack(command, o);
+}
+
+constexpr glm::ivec2 kQuickSize(160); // of `error`
+
+/// The sampling's options, several values each.
+void bindGrid(CLI::App& command, GridAxes& axes) {
+    const auto group = "What is varied";
+    addList<double>(command, "--layer-spacing", axes.spacings,
+                    numberParser<double>(kLeastSpacing, kMostSpacing),
+                    fmt::format("numbers from {} to {}", kLeastSpacing, kMostSpacing),
+                    "distances of layers in units of the smallest voxel edge")
+        ->type_name("VOXELS,...")
+        ->default_str("4,2,1,0.5,0.25,0.125")
+        ->group(group);
+    addList<int>(command, "--layers-per-plane", axes.layersPerPlane,
+                 numberParser<int>(0, kMaxLayers),
+                 fmt::format("whole numbers from 0 to {}", kMaxLayers),
+                 "1 is slicing, 0 is all in one plane: ray casting")
+        ->type_name("N,...")
+        ->default_str("1,8,16,64,0")
+        ->group(group);
+    const auto addWords = [&](const char* flag, auto& values, const auto& choices,
+                              const char* help) {
+        addList(command, flag, values, choiceParser(choices),
+                "one or several of " + wordsOf(choices, ", "), help)
+            ->type_name("WORD,...")
+            ->default_str(wordsOf(choices, ","))
+            ->group(group);
+    };
+    addWords("--classify", axes.classifications, classificationWords(), "kinds of classification");
+    addWords("--target", axes.targets, targetWords(), "what planes are blended into");
+    addWords("--jitter", axes.jitter, onOffWords(), "layers moved by up to half a layer");
+    addList<std::optional<double>>(command, "--termination", axes.terminations, parseTermination,
+                                   "opacities above 0 and up to 1, or off,",
+                                   "opacities at which a segment is left, or off")
+        ->type_name("A|off,...")
+        ->default_str(fmt::format("{:.4f},off", Settings{}.termination.value_or(1.0)))
+        ->group(group);
+}
+
+void bindTargetError(CLI::App& command, RenderOptions& o) {
+    const auto group = "Accuracy";
+    CLI::Option* target =
+        addNumber(command, "--target-error", o.targetError, 0.0, 1.0,
+                  "take the cheapest sampling (--layer-spacing, --layers-per-plane, --classify, "
+                  "--target, --termination, --jitter) that is expected to come within this RMSE of "
+                  "the exact picture, of those that `slabcast error` measured on this device")
+            ->type_name("RMSE")
+            ->default_str("off")
+            ->group(group);
+    for (const char* decided : {"--layer-spacing", "--layers", "--layers-per-plane", "--planes",
+                                "--classify", "--target", "--termination", "--jitter"}) {
+        target->excludes(command.get_option(decided));
+    }
+    command
+        .add_flag("--verify", o.verify,
+                  "integrate the exact picture too, which takes a while, and print how far off "
+                  "this one is; --stats gets it as well")
+        ->group(group);
 }
 
 } // namespace
@@ -257,17 +98,22 @@ void bindRender(CLI::App& command, RenderOptions& o) {
         ->group(output);
     command.add_flag("--explain", o.explain, "print what the plan chose and why")->group(output);
     bindScene(command, o);
-    const auto layers = "Layers, planes and skipping";
     addNumber(command, "--layers", o.settings.totalLayers, 1, kMaxLayers,
               "layers in all, instead of --layer-spacing")
         ->type_name("N")
         ->default_str("by spacing")
-        ->group(layers);
+        ->group(kLayersGroup);
     addNumber(command, "--planes", o.settings.planes, 1, kMaxLayers,
               "proxy planes: 1 is ray casting, as many as layers is slicing")
         ->type_name("N")
         ->default_str("the fastest of several, measured")
-        ->group(layers);
+        ->group(kLayersGroup);
+    addNumber(command, "--layers-per-plane", o.settings.layersPerPlane, 1, kMaxLayers,
+              "instead of --planes: 1 is slicing")
+        ->type_name("N")
+        ->default_str("by planes")
+        ->group(kLayersGroup);
+    bindTargetError(command, o);
     command.footer("Example: a skull from the side, shaded, with the reasons for what was chosen\n"
                    "  slabcast render skull.nrrd -o skull.png --tf ct-bone --shade phong --camera "
                    "90,10,2.5 --explain");
@@ -282,10 +128,9 @@ void bindSweep(CLI::App& command, SweepOptions& o) {
         ->required()
         ->type_name("FOLDER")
         ->group(group);
-    addParsed<std::vector<int>>(
-        command, "--layers", o.layersPerPlane, parseCounts,
-        fmt::format("whole numbers from 0 to {} with commas between", kMaxLayers),
-        "layers per plane to measure; 1 is slicing, 0 is all in one plane: ray casting")
+    addList<int>(command, "--layers", o.layersPerPlane, numberParser<int>(0, kMaxLayers),
+                 fmt::format("whole numbers from 0 to {}", kMaxLayers),
+                 "layers per plane to measure; 1 is slicing, 0 is all in one plane: ray casting")
         ->type_name("N,N,...")
         ->default_str(fmt::format("{},0", fmt::join(kUnrollLengths, ",")))
         ->group(group);
@@ -296,6 +141,58 @@ void bindSweep(CLI::App& command, SweepOptions& o) {
     bindScene(command, o);
     command.footer("Example: what each ratio costs on this device; look at sweep/report.html\n"
                    "  slabcast sweep phantom:vessels:128 --layers 1,4,16,64,0 --out sweep");
+}
+
+void bindStability(CLI::App& command, StabilityOptions& o) {
+    const auto group = "Output";
+    command
+        .add_option("--out", o.outputFolder,
+                    "folder for stability.json, stability.csv and report.html; made where missing")
+        ->required()
+        ->type_name("FOLDER")
+        ->group(group);
+    command.add_option("--family", o.family, "only the cases of this family")
+        ->type_name("NAME")
+        ->default_str("all")
+        ->group(group);
+    command.add_flag("--reduced", o.reduced, "fewer sizes, views and repetitions; the same bounds")
+        ->group(group);
+    command.footer("Example: every case, with its bound and what was measured\n"
+                   "  slabcast stability --out stability");
+}
+
+void bindError(CLI::App& command, ErrorOptions& o) {
+    const auto group = "Output";
+    command
+        .add_option("--out", o.outputFolder,
+                    "folder for error.json, error.csv, report.html and pictures; made where it is "
+                    "missing; a run cut short goes on where it was")
+        ->required()
+        ->type_name("FOLDER")
+        ->group(group);
+    command
+        .add_flag("--quick", o.quick,
+                  fmt::format("{}x{} pixels and fewer settings", kQuickSize.x, kQuickSize.y))
+        ->group(group);
+    command.final_callback([&command, &o] {
+        if (o.quick && command.count("--size") == 0) {
+            o.size = kQuickSize;
+        }
+    });
+    addNumber(command, "--frames", o.frames, 2, 10000, "timed frames per row, fewer of slow ones")
+        ->type_name("N")
+        ->default_str(fmt::format("{}", o.frames))
+        ->group(group);
+    bindInput(command, o.input);
+    bindTexture(command, o.input);
+    o.size = {256, 256};
+    bindCamera(command, o);
+    bindLook(command, o);
+    bindGrid(command, o.axes);
+    bindStack(command, o);
+    command.footer("Example: which setting is worth its time on this device; look at "
+                   "err/report.html\n"
+                   "  slabcast error phantom:vessels:64 --quick --out err");
 }
 
 void bindInfo(CLI::App& command, InputOptions& o) {

@@ -8,6 +8,7 @@
 
 #include "core/frame/frame_plan.h"
 #include "core/frame/renderer.h"
+#include "platform/cli/error_grid.h"
 #include "platform/cli/session.h"
 
 namespace slabcast {
@@ -30,6 +31,8 @@ struct RenderOptions : SceneOptions {
     std::string statsFile;
     int frames = 1;
     bool explain = false;
+    std::optional<double> targetError; // RMSE: decides the sampling
+    bool verify = false;
 };
 
 struct SweepOptions : SceneOptions {
@@ -38,10 +41,26 @@ struct SweepOptions : SceneOptions {
     int frames = 12;
 };
 
+struct StabilityOptions {
+    std::string outputFolder;
+    std::string family; // empty: all
+    bool reduced = false;
+};
+
+struct ErrorOptions : SceneOptions {
+    std::string outputFolder;
+    bool quick = false;
+    std::optional<glm::ivec2> givenSize;
+    GridAxes axes;
+    int frames = 5;
+};
+
 // Each binds the options of one command, with its help; values that do not parse throw
 // CLI::ParseError. `options` must outlive the parsing.
 void bindRender(CLI::App& command, RenderOptions& options);
 void bindSweep(CLI::App& command, SweepOptions& options);
+void bindStability(CLI::App& command, StabilityOptions& options);
+void bindError(CLI::App& command, ErrorOptions& options);
 void bindInfo(CLI::App& command, InputOptions& options);
 
 } // namespace slabcast

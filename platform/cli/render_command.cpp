@@ -2,8 +2,10 @@
 
 #include "platform/cli/commands.h"
 #include "platform/cli/draw.h"
+#include "platform/cli/error_table_file.h"
 #include "platform/cli/picture_file.h"
 #include "platform/cli/progress.h"
+#include "platform/cli/reference_pictures.h"
 #include "platform/io/atomic_file.h"
 
 namespace slabcast {
@@ -20,6 +22,83 @@ void explain(const FramePlan& plan, const VolumeInfo& info, const Scene& scene) 
     for (const Reason& reason : plan.reasons) {
         fmt::print("{}: {}\n", reason.what, reason.why);
     }
+}
+
+/// The sampling that is expected to do, in place of the user's; says so where reasons are asked
+/// for.
+Result<Settings> settingsFor(Stage& stage, const RenderOptions& options) {
+    if (!options.targetError) {
+        return options.settings;
+    }
+    const Result<std::filesystem::path> path = errorTablePath(stage.session().caps);
+    const Result<std::vector<MeasuredError>> table =
+        path ? readErrorTable(*path) : tl::unexpected(path.error());
+    const Result<ErrorChoice> choice =
+        table ? cheapestWithin(*options.targetError, labelOf(stage), *table)
+              : tl::unexpected(table.error());
+    if (!choice) {
+        return tl::unexpected(choice.error());
+    }
+    if (options.explain) {
+        fmt::print("target error {:g}: {}; expected RMSE {:.3g} at {:.3g} ms per megapixel, {} "
+                   "with {}\n",
+                   *options.targetError, describe(choice->sampling), choice->expectedRmse,
+                   choice->expectedMsPerMegapixel,
+                   choice->measurements == 1
+                       ? "as measured"
+                       : fmt::format("the worst of {} measurements", choice->measurements),
+                   choice->ofThisScene ? "this volume and transfer function" : "other scenes");
+    }
+    if (Result<void> look = stage.reclassify(choice->sampling.classification); !look) {
+        return tl::unexpected(look.error());
+    }
+    return withSampling(options.settings, choice->sampling, stage.scene().facts());
+}
+
+struct Turn {
+    std::vector<double> frameMs;
+    std::vector<glm::vec4> firstPicture;
+};
+
+/// The volume turned once around.
+Result<Turn> drawTurn(Stage& stage, const FramePlan& plan, int frames, bool encoded) {
+    if (frames > 1) {
+        (void)stage.drawTimed(
+            plan, 0.0); // the first frame after a compile also pays for the driver's own work
+    }
+    Turn turn;
+    Progress progress;
+    for (int k = 0; k < frames; ++k) {
+        progress.show(fmt::format("frame {} of {}", k + 1, frames));
+        const Result<double> ms = stage.drawTimed(plan, 360.0 * k / frames);
+        if (!ms) {
+            return tl::unexpected(ms.error());
+        }
+        turn.frameMs.push_back(*ms);
+        if (k == 0) {
+            turn.firstPicture = stage.picture(encoded);
+        }
+    }
+    return turn;
+}
+
+/// How far the first frame is from the exact picture.
+Result<PictureDifference> verify(Stage& stage, const FramePlan& plan, glm::ivec2 size) {
+    const Result<std::vector<glm::dvec4>> picture = stage.drawOnNothing(plan);
+    if (!picture) {
+        return tl::unexpected(picture.error());
+    }
+    Progress progress;
+    const std::vector<glm::dvec4> exact = continuousPicture(stage, size, [&progress](double done) {
+        progress.show(fmt::format("integrating the exact picture: {:.0f} %", 100.0 * done));
+    });
+    return difference(*picture, exact, plan.space);
+}
+
+void print(const PictureDifference& d) {
+    fmt::print("error: RMSE {:.4g}, PSNR {:.4g} dB, at most {:.4g}; CIEDE2000 {:.3g} on average, "
+               "{:.3g} at the 99.9th percentile\n",
+               d.rmse, d.psnr, d.max, d.meanDeltaE, d.p999DeltaE);
 }
 
 nlohmann::json stats(Stage& stage, const FramePlan& plan, const std::vector<double>& times) {
@@ -57,9 +136,24 @@ Result<bool> checkOutputs(const RenderOptions& options) {
     return pictureIsEncoded(options.output);
 }
 
+Result<void> checkAccuracyOptions(const RenderOptions& options) {
+    if (options.settings.shaded && (options.verify || options.targetError)) {
+        return fail(ErrorCode::InvalidArgument,
+                    fmt::format("{} knows pictures without shading only: leave it or --shade "
+                                "phong out",
+                                options.verify ? "--verify" : "--target-error"));
+    }
+    return {};
+}
+
 } // namespace
 
-Result<void> renderCommand(const RenderOptions& options) {
+Result<void> renderCommand(const RenderOptions& given) {
+    RenderOptions options = given;
+    options.input.keepValues = options.verify;
+    if (Result<void> sound = checkAccuracyOptions(options); !sound) {
+        return sound;
+    }
     const Result<bool> encoded = checkOutputs(options);
     if (!encoded) {
         return tl::unexpected(encoded.error());
@@ -68,7 +162,11 @@ Result<void> renderCommand(const RenderOptions& options) {
     if (!stage) {
         return tl::unexpected(stage.error());
     }
-    const Result<FramePlan> plan = stage->decide(options.settings);
+    const Result<Settings> settings = settingsFor(*stage, options);
+    if (!settings) {
+        return tl::unexpected(settings.error());
+    }
+    const Result<FramePlan> plan = stage->decide(*settings);
     if (!plan) {
         return tl::unexpected(plan.error());
     }
@@ -78,32 +176,32 @@ Result<void> renderCommand(const RenderOptions& options) {
     if (options.explain) {
         explain(*plan, stage->info(), stage->scene());
     }
-    if (options.frames > 1) {
-        (void)stage->drawTimed(
-            *plan, 0.0); // the first frame after a compile also pays for the driver's own work
+    const Result<Turn> turn = drawTurn(*stage, *plan, options.frames, *encoded);
+    if (!turn) {
+        return tl::unexpected(turn.error());
     }
-    std::vector<double> times;
-    Progress progress;
-    std::vector<glm::vec4> picture;
-    for (int k = 0; k < options.frames; ++k) {
-        progress.show(fmt::format("frame {} of {}", k + 1, options.frames));
-        const Result<double> ms = stage->drawTimed(*plan, 360.0 * k / options.frames);
-        if (!ms) {
-            return tl::unexpected(ms.error());
-        }
-        times.push_back(*ms);
-        if (k == 0) {
-            picture = stage->picture(*encoded);
-        }
-    }
-    if (Result<void> saved =
-            savePicture(options.output, options.size, picture, options.background.has_value());
+    if (Result<void> saved = savePicture(options.output, options.size, turn->firstPicture,
+                                         options.background.has_value());
         !saved) {
         return saved;
     }
-    return options.statsFile.empty()
-               ? Result<void>{}
-               : writeFileAtomically(options.statsFile, stats(*stage, *plan, times).dump(2) + "\n");
+    std::optional<PictureDifference> error;
+    if (options.verify) {
+        const Result<PictureDifference> found = verify(*stage, *plan, options.size);
+        if (!found) {
+            return tl::unexpected(found.error());
+        }
+        error = *found;
+        print(*error);
+    }
+    if (options.statsFile.empty()) {
+        return {};
+    }
+    nlohmann::json content = stats(*stage, *plan, turn->frameMs);
+    if (error) {
+        content["error"] = toJson(*error);
+    }
+    return writeFileAtomically(options.statsFile, content.dump(2) + "\n");
 }
 
 } // namespace slabcast

@@ -53,6 +53,22 @@ Result<Volume> openVolume(const InputOptions& options) {
     return volume;
 }
 
+Result<MemoryForecast> checkMemory(const VolumeInfo& info, TexelFormat format,
+                                   Classification classification, const InputOptions& options,
+                                   const gl::Caps& caps) {
+    const bool preclassified = classification == Classification::Pre;
+    const std::optional<std::int64_t> budget =
+        options.gpuBudgetMib
+            ? std::optional(static_cast<std::int64_t>(*options.gpuBudgetMib * 1048576.0))
+            : std::nullopt;
+    if (Result<void> fits =
+            checkFits(info.dims, uploadedBytesPerTexel(format, preclassified), caps, budget);
+        !fits) {
+        return tl::unexpected(fits.error());
+    }
+    return forecastMemory(info.dims, info.type, format, preclassified);
+}
+
 Result<LoadedScene> openScene(const InputOptions& options, Classification classification,
                               const Session& session) {
     Result<Volume> volume = openVolume(options);
@@ -60,7 +76,7 @@ Result<LoadedScene> openScene(const InputOptions& options, Classification classi
         return tl::unexpected(volume.error());
     }
     VolumeInfo info{.name = volume->name,
-                    .type = name(volume->type),
+                    .type = volume->type,
                     .unit = volume->unit,
                     .dims = volume->geometry.dims,
                     .spacingMm = volume->geometry.spacingMm,
@@ -72,20 +88,10 @@ Result<LoadedScene> openScene(const InputOptions& options, Classification classi
     }
     const VolumeStatistics statistics = computeStatistics(*volume);
     info.modality = likelyModality(*volume, statistics);
-    const bool preclassified = classification == Classification::Pre;
     const TexelFormat format = chooseTexelFormat(volume->type, statistics, options.exact,
                                                  session.formats, &info.formatReason);
-    const std::optional<std::int64_t> budget =
-        options.gpuBudgetMib
-            ? std::optional(static_cast<std::int64_t>(*options.gpuBudgetMib * 1048576.0))
-            : std::nullopt;
-    if (Result<void> fits = checkFits(info.dims, uploadedBytesPerTexel(format, preclassified),
-                                      session.caps, budget);
-        !fits) {
-        return tl::unexpected(fits.error());
-    }
     const Result<MemoryForecast> forecast =
-        forecastMemory(info.dims, volume->type, format, preclassified);
+        checkMemory(info, format, classification, options, session.caps);
     if (!forecast) {
         return tl::unexpected(forecast.error());
     }
@@ -93,7 +99,12 @@ Result<LoadedScene> openScene(const InputOptions& options, Classification classi
     const auto test = std::find_if(session.formats.begin(), session.formats.end(),
                                    [=](const TexelFormatTest& t) { return t.format == format; });
     const double filterError = test == session.formats.end() ? 0.0 : test->maxFilterError;
-    return LoadedScene{Scene::create(std::move(*volume), format, filterError), std::move(info)};
+    std::optional<Texels> values;
+    if (options.keepValues) {
+        values = encodeTexels(*volume, statistics, TexelFormat::R32fExact);
+    }
+    return LoadedScene{Scene::create(std::move(*volume), format, filterError), std::move(info),
+                       std::move(values)};
 }
 
 Result<TransferFunction> chooseTransferFunction(const std::string& tf, const Scene& scene,

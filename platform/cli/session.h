@@ -29,6 +29,7 @@ struct InputOptions {
     int downsample = 1;
     bool exact = false;
     std::optional<double> gpuBudgetMib;
+    bool keepValues = false; // the volume's own values too, for references
 };
 
 Result<Volume> openVolume(const InputOptions& options);
@@ -36,7 +37,7 @@ Result<Volume> openVolume(const InputOptions& options);
 /// What statistics say of the volume after its voxels are gone.
 struct VolumeInfo {
     std::string name;
-    std::string type;
+    VoxelType type = VoxelType::U8;
     std::string unit;
     glm::ivec3 dims{0};
     glm::dvec3 spacingMm{0.0};
@@ -49,7 +50,13 @@ struct VolumeInfo {
 struct LoadedScene {
     Scene scene;
     VolumeInfo info;
+    std::optional<Texels> values; // exact, where they are to be kept
 };
+
+/// What the texels take where they are classified so. Fails: as checkFits() and forecastMemory().
+Result<MemoryForecast> checkMemory(const VolumeInfo& info, TexelFormat format,
+                                   Classification classification, const InputOptions& options,
+                                   const gl::Caps& caps);
 
 /// Chooses the texel format, checks that what this classification uploads fits before anything is
 /// allocated on the GPU, builds the scene.

@@ -1,17 +1,12 @@
-#include <chrono>
-#include <ctime>
 #include <filesystem>
-#include <fstream>
 
 #include <fmt/core.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "platform/cli/commands.h"
 #include "platform/cli/draw.h"
 #include "platform/cli/picture_file.h"
 #include "platform/cli/progress.h"
+#include "platform/cli/report_files.h"
 #include "platform/io/atomic_file.h"
 
 namespace slabcast {
@@ -20,8 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-constexpr int kThumbnailEdge = 192;
 
 /// What is measured at every ratio: the plain stack, then what skipping and tight planes add to it.
 struct Series {
@@ -72,29 +65,6 @@ std::vector<Settings> rowSettings(const SweepOptions& options, int total) {
         }
     }
     return rows;
-}
-
-/// Box-filtered to a small edge.
-std::pair<glm::ivec2, std::vector<glm::vec4>> thumbnail(glm::ivec2 size,
-                                                        const std::vector<glm::vec4>& picture) {
-    const int shrink = std::max(1, std::max(size.x, size.y) / kThumbnailEdge);
-    const glm::ivec2 small = glm::max(size / shrink, glm::ivec2(1));
-    std::vector<glm::vec4> pixels(static_cast<std::size_t>(small.x) * small.y, glm::vec4(0.0F));
-    for (int y = 0; y < small.y * shrink && y < size.y; ++y) {
-        for (int x = 0; x < small.x * shrink && x < size.x; ++x) {
-            pixels[static_cast<std::size_t>(y / shrink) * small.x + x / shrink] +=
-                picture[static_cast<std::size_t>(y) * size.x + x] /
-                static_cast<float>(shrink * shrink);
-        }
-    }
-    return {small, std::move(pixels)};
-}
-
-std::string timestamp() {
-    const std::time_t now = std::time(nullptr);
-    char text[32];
-    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
-    return text;
 }
 
 /// One row: plan, frames of one turn, work, thumbnail.
@@ -177,17 +147,12 @@ json conditions(const Stage& stage, const SweepOptions& o) {
 json header(Stage& stage, const SweepOptions& options, const std::string& command) {
     const GpuMemory gpu = stage.renderer().gpuMemory();
     const ProximityCloud* cloud = stage.scene().cloud();
-    json result = {{"command", command},
-                   {"commit", commit()},
-                   {"date", timestamp()},
-                   {"device", toJson(stage.session().caps)},
-                   {"volume", toJson(stage.info())},
-                   {"conditions", conditions(stage, options)},
-                   {"memory",
-                    {{"peakHostBytes", peakHostBytes()},
-                     {"volumeBytes", stage.info().bytes},
-                     {"textureBytes", gpu.volumeBytes},
-                     {"skipBytes", cloud != nullptr ? cloud->freeLengths.size() : 0}}}};
+    json result = reportHeader(stage, command);
+    result["conditions"] = conditions(stage, options);
+    result["memory"] = {{"peakHostBytes", peakHostBytes()},
+                        {"volumeBytes", stage.info().bytes},
+                        {"textureBytes", gpu.volumeBytes},
+                        {"skipBytes", cloud != nullptr ? cloud->freeLengths.size() : 0}};
     if (cloud != nullptr) {
         result["skipBuild"] = {{"structure", "proximity"},
                                {"blockEdge", cloud->blockEdgeVoxels},
@@ -197,75 +162,27 @@ json header(Stage& stage, const SweepOptions& options, const std::string& comman
     return result;
 }
 
-std::string csvOf(const json& rows) {
-    static const char* const kColumns[] = {"planes",  "layersPerPlane", "form",        "skip",
-                                           "tighten", "classification", "termination", "lattice",
-                                           "variant", "compileMs"};
-    static const char* const kTimes[] = {"median", "min", "max", "p10", "p90", "n"};
-    static const char* const kCounters[] = {"fragments", "layers_evaluated", "layers_skipped",
-                                            "volume_fetches", "skip_fetches"};
-    const auto cell = [](const json& value) {
-        return value.is_null() ? "" : value.is_string() ? value.get<std::string>() : value.dump();
-    };
-    std::string text;
-    const auto addLine = [&text](auto&& valueOf) {
-        std::string line;
-        for (const char* column : kColumns)
-            line += valueOf(nullptr, column) + ",";
-        for (const char* column : kTimes)
-            line += valueOf("frameMs", column) + ",";
-        for (const char* column : kCounters)
-            line += valueOf("counters", column) + ",";
-        line.back() = '\n';
-        text += line;
-    };
-    addLine([](const char* group, const char* column) {
-        return group != nullptr && std::string_view(group) == "frameMs"
-                   ? std::string("frame_ms_") + column
-                   : std::string(column);
-    });
-    for (const json& row : rows) {
-        addLine([&](const char* group, const char* column) {
-            const json& part = group == nullptr ? row : row.at(group);
-            return part.is_null() ? std::string() : cell(part.at(column));
-        });
-    }
-    return text;
-}
-
-/// Runs a program of these words and waits for it; what it prints goes to stderr. True where it
-/// ends well.
-bool run(std::vector<std::string> words) {
-    std::vector<char*> arguments;
-    for (std::string& word : words) {
-        arguments.push_back(word.data());
-    }
-    arguments.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
-    pid_t child = 0;
-    const bool started =
-        posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ) == 0;
-    posix_spawn_file_actions_destroy(&actions);
-    int status = 0;
-    return started && waitpid(child, &status, 0) == child && status == 0;
-}
-
-/// The page is made by a script from the JSON, so that it can be made again.
-Result<void> writePage(const std::string& folder) {
-    const fs::path installed =
-        fs::read_symlink("/proc/self/exe").parent_path() / "../share/slabcast/perf/report.py";
-    const fs::path script = fs::exists(installed) ? installed : fs::path(SLABCAST_REPORT_SCRIPT);
-    if (!run({"/usr/bin/python3", script.string(), folder})) {
-        return fail(
-            ErrorCode::FileUnwritable,
-            fmt::format("{0}/sweep.json and sweep.csv are written, report.html is not: install "
-                        "python3-matplotlib, then run {1} {0}",
-                        folder, script.string()));
-    }
-    return {};
-}
+constexpr CsvColumn kColumns[] = {{"planes", "/planes"},
+                                  {"layersPerPlane", "/layersPerPlane"},
+                                  {"form", "/form"},
+                                  {"skip", "/skip"},
+                                  {"tighten", "/tighten"},
+                                  {"classification", "/classification"},
+                                  {"termination", "/termination"},
+                                  {"lattice", "/lattice"},
+                                  {"variant", "/variant"},
+                                  {"compileMs", "/compileMs"},
+                                  {"frame_ms_median", "/frameMs/median"},
+                                  {"frame_ms_min", "/frameMs/min"},
+                                  {"frame_ms_max", "/frameMs/max"},
+                                  {"frame_ms_p10", "/frameMs/p10"},
+                                  {"frame_ms_p90", "/frameMs/p90"},
+                                  {"frame_ms_n", "/frameMs/n"},
+                                  {"fragments", "/counters/fragments"},
+                                  {"layers_evaluated", "/counters/layers_evaluated"},
+                                  {"layers_skipped", "/counters/layers_skipped"},
+                                  {"volume_fetches", "/counters/volume_fetches"},
+                                  {"skip_fetches", "/counters/skip_fetches"}};
 
 } // namespace
 
@@ -277,13 +194,9 @@ Result<void> sweepCommand(const SweepOptions& options, const std::string& comman
     if (!stage) {
         return tl::unexpected(stage.error());
     }
-    std::error_code error;
     const fs::path folder = options.outputFolder;
-    fs::create_directories(folder / "thumbnails", error);
-    if (error) {
-        return fail(ErrorCode::FileUnwritable,
-                    fmt::format("{}: cannot make this folder ({}): give another to --out",
-                                options.outputFolder, error.message()));
+    if (Result<void> made = makeReportFolder(folder / "thumbnails"); !made) {
+        return made;
     }
     const std::vector<Settings> plans =
         rowSettings(options, totalLayers(options.settings, stage->scene().facts()));
@@ -302,7 +215,8 @@ Result<void> sweepCommand(const SweepOptions& options, const std::string& comman
     }
     json report = header(*stage, options, command);
     report["rows"] = std::move(rows);
-    if (Result<void> done = writeFileAtomically(folder / "sweep.csv", csvOf(report["rows"]));
+    if (Result<void> done =
+            writeFileAtomically(folder / "sweep.csv", csvOf(report["rows"], kColumns));
         !done) {
         return done;
     }
@@ -310,7 +224,7 @@ Result<void> sweepCommand(const SweepOptions& options, const std::string& comman
         !done) {
         return done;
     }
-    return writePage(options.outputFolder);
+    return writePage(folder, "report.py", "sweep.json and sweep.csv");
 }
 
 } // namespace slabcast

@@ -1,0 +1,81 @@
+#include "platform/cli/command_line.h"
+
+#include <fmt/core.h>
+
+namespace slabcast {
+
+namespace {
+
+/// Adds flags with their values to a command; what is the default anyway is left out.
+class CommandLine {
+public:
+    explicit CommandLine(std::string begin) : text_(std::move(begin)) {}
+
+    CommandLine& add(const char* flag, const std::string& word) {
+        text_ += fmt::format(" {} {}", flag, shellWord(word));
+        return *this;
+    }
+    CommandLine& addIf(bool differs, const char* flag, const std::string& word) {
+        return differs ? add(flag, word) : *this;
+    }
+    CommandLine& addFlagIf(bool given, const char* flag) {
+        text_ += given ? std::string(" ") + flag : "";
+        return *this;
+    }
+    const std::string& text() const { return text_; }
+
+private:
+    std::string text_;
+};
+
+std::string words(const OrbitCamera& c) {
+    return fmt::format("{},{},{}", c.azimuthDegrees, c.elevationDegrees, c.distanceRadii);
+}
+
+} // namespace
+
+std::string shellWord(const std::string& word) {
+    constexpr const char* kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%";
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) {
+        return word;
+    }
+    std::string quoted = "'";
+    for (const char c : word) {
+        quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    }
+    return quoted + "'";
+}
+
+std::string renderCommandLine(const SceneOptions& scene, const Sampling& sampling,
+                              const FramePlan& plan, const std::string& output) {
+    const SceneOptions usual;
+    const InputOptions& input = scene.input;
+    const auto number = [](double value) { return fmt::format("{}", value); };
+    return CommandLine("slabcast render " + shellWord(input.volume))
+        .add("-o", output)
+        .addIf(!input.series.empty(), "--series", input.series)
+        .addIf(!input.raw.empty(), "--raw", input.raw)
+        .addIf(input.downsample != 1, "--downsample", fmt::format("{}", input.downsample))
+        .addFlagIf(input.exact, "--exact")
+        .add("--size", fmt::format("{}x{}", scene.size.x, scene.size.y))
+        .addIf(words(scene.camera) != words(usual.camera), "--camera", words(scene.camera))
+        .addIf(scene.fovDegrees != usual.fovDegrees, "--fov", number(scene.fovDegrees))
+        .addIf(!scene.tf.empty(), "--tf", scene.tf)
+        .addIf(plan.space != usual.settings.space, "--space", name(plan.space))
+        .add("--classify", name(sampling.classification))
+        .add("--target", name(sampling.target))
+        .add("--layer-spacing", number(sampling.layerSpacingVoxels))
+        .add("--layers-per-plane", fmt::format("{}", plan.layersPerPlane))
+        .add("--termination", sampling.termination ? number(*sampling.termination) : "off")
+        .add("--jitter", sampling.jitter ? "on" : "off")
+        .addIf(plan.lattice.kind != usual.settings.lattice, "--lattice", name(plan.lattice.kind))
+        .add("--form", plan.variant.unroll > 0 ? "unrolled" : "loop")
+        .add("--skip", name(plan.variant.skip))
+        .addIf(scene.skipBlockEdge != usual.skipBlockEdge, "--skip-block",
+               fmt::format("{}", scene.skipBlockEdge))
+        .addIf(!plan.tighten, "--tighten", "off")
+        .text();
+}
+
+} // namespace slabcast

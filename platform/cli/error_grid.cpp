@@ -1,0 +1,166 @@
+#include "platform/cli/error_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+namespace slabcast {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kParts[] = {"total", "sampling", "table", "gpu"};
+constexpr double kFloor = 1e-9;
+/// Ray casting: where leaving a ray early shows most, and what is drawn in the least time.
+constexpr int kVariedLayersPerPlane = 0;
+
+template <class T>
+void fill(std::vector<T>& axis, std::vector<T> defaults) {
+    if (axis.empty()) {
+        axis = std::move(defaults);
+    }
+}
+
+/// Rows of one family differ in spacing alone.
+json familyOf(const json& row) {
+    json family;
+    for (const char* key : {"layers", "classification", "target", "termination", "jitter"}) {
+        family[key] = row.at(key);
+    }
+    return family;
+}
+
+std::optional<double> rmseOf(const json& row, const char* part) {
+    const json& error = row.at("error").at(part);
+    return error.is_null() ? std::nullopt : std::optional(error.at("rmse").get<double>());
+}
+
+/// Where sampling is most of the total, the total is not yet at what table and GPU leave.
+bool atFloor(const json& row, const char* part) {
+    const std::optional<double> rmse = rmseOf(row, part);
+    if (!rmse || *rmse < kFloor) {
+        return true;
+    }
+    const std::optional<double> sampling = rmseOf(row, "sampling");
+    return std::string_view(part) == "total" && (!sampling || *sampling < 0.5 * *rmse);
+}
+
+json orderOf(const json& coarse, const json& fine, const char* part) {
+    if (atFloor(coarse, part) || atFloor(fine, part)) {
+        return nullptr;
+    }
+    return std::log(*rmseOf(coarse, part) / *rmseOf(fine, part)) /
+           std::log(coarse.at("spacing").get<double>() / fine.at("spacing").get<double>());
+}
+
+/// The row of the same family with the next larger spacing.
+const json* nextCoarser(const json& rows, const json& row) {
+    const json* found = nullptr;
+    for (const json& other : rows) {
+        const bool coarser = other.at("spacing") > row.at("spacing");
+        if (coarser && familyOf(other) == familyOf(row) &&
+            (found == nullptr || other.at("spacing") < found->at("spacing"))) {
+            found = &other;
+        }
+    }
+    return found;
+}
+
+} // namespace
+
+GridAxes completed(GridAxes given, bool quick) {
+    fill(given.spacings,
+         quick ? std::vector{2.0, 1.0, 0.5, 0.25} : std::vector{4.0, 2.0, 1.0, 0.5, 0.25, 0.125});
+    std::sort(given.spacings.rbegin(), given.spacings.rend());
+    fill(given.layersPerPlane, {1, 8, 16, 64, 0});
+    fill(given.classifications,
+         {Classification::Post, Classification::Pre, Classification::Preintegrated});
+    fill(given.targets, {TargetFormat::Rgba8, TargetFormat::Rgba16f});
+    fill(given.terminations, {Settings{}.termination, std::nullopt});
+    fill(given.jitter, {false, true});
+    return given;
+}
+
+std::vector<Sampling> gridOf(const GridAxes& axes, bool quick) {
+    const auto& lengths = axes.layersPerPlane;
+    const bool listed =
+        std::find(lengths.begin(), lengths.end(), kVariedLayersPerPlane) != lengths.end();
+    const int varied = listed ? kVariedLayersPerPlane : lengths.back();
+    std::vector<Sampling> grid;
+    const auto add = [&](const Sampling& s) {
+        const int variations =
+            (s.jitter != axes.jitter.front()) + (s.termination != axes.terminations.front());
+        if (!quick || variations == 0 || (variations == 1 && s.layersPerPlane == varied)) {
+            grid.push_back(s);
+        }
+    };
+    for (const Classification classification : axes.classifications) {
+        for (const bool jitter : axes.jitter) {
+            for (const double spacing : axes.spacings) {
+                for (const int layers : axes.layersPerPlane) {
+                    for (const TargetFormat target : axes.targets) {
+                        for (const auto& termination : axes.terminations) {
+                            add({spacing, layers, classification, target, termination, jitter});
+                        }
+                    }
+                }
+            }
+        }
+    }
+    return grid;
+}
+
+std::string idOf(const Sampling& s) {
+    return fmt::format("{}_{}_s{}_l{}_t{}{}", name(s.classification), name(s.target),
+                       s.layerSpacingVoxels, s.layersPerPlane,
+                       s.termination ? fmt::format("{}", *s.termination) : "off",
+                       s.jitter ? "_jitter" : "");
+}
+
+json toJson(const std::optional<double>& termination) {
+    return termination ? json(*termination) : json("off");
+}
+
+json toJson(const GridAxes& axes) {
+    const auto list = [](const auto& values, auto&& convert) {
+        json all = json::array();
+        for (const auto& value : values) {
+            all.push_back(convert(value));
+        }
+        return all;
+    };
+    const auto named = [](auto value) { return name(value); };
+    return {{"spacings", axes.spacings},
+            {"layers", axes.layersPerPlane},
+            {"classifications", list(axes.classifications, named)},
+            {"targets", list(axes.targets, named)},
+            {"terminations",
+             list(axes.terminations, [](const std::optional<double>& t) { return toJson(t); })},
+            {"jitter", axes.jitter}};
+}
+
+json toJson(const Sampling& s) {
+    return {{"spacing", s.layerSpacingVoxels},          {"layers", s.layersPerPlane},
+            {"classification", name(s.classification)}, {"target", name(s.target)},
+            {"termination", toJson(s.termination)},     {"jitter", s.jitter}};
+}
+
+void addOrders(json& rows) {
+    for (json& row : rows) {
+        const json* coarser = nextCoarser(rows, row);
+        json order;
+        for (const char* part : kParts) {
+            order[part] = coarser == nullptr ? json() : orderOf(*coarser, row, part);
+        }
+        row["order"] = std::move(order);
+        row["coarser"] = coarser == nullptr ? json() : coarser->at("id");
+    }
+}
+
+double totalRmse(const json& row) {
+    return row.at("error").at("total").at("rmse").get<double>();
+}
+
+} // namespace slabcast

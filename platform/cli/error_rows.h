@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "platform/cli/draw.h"
+#include "platform/cli/error_store.h"
+#include "platform/cli/progress.h"
+
+namespace slabcast {
+
+/// Measures a grid's rows, or takes them from the store.
+class ErrorRows {
+public:
+    /// Borrows all. Contract: the store has the reference.
+    ErrorRows(Stage& stage, const ErrorOptions& options, ErrorStore& store)
+        : stage_(stage), options_(options), store_(store), reference_(store.reference()->pixels) {}
+
+    /// Every row of the grid with a plan of its own, in order.
+    Result<nlohmann::json> measure(const std::vector<Sampling>& grid);
+
+private:
+    /// Sampled in float64, once for all rows that take the same samples.
+    struct Sampled {
+        Lattice lattice;
+        Classification classification = Classification::Post;
+        std::vector<glm::dvec4> withTable;
+        nlohmann::json sampling, table; // the parts of the error
+    };
+
+    Result<nlohmann::json> measureRow(const Sampling& sampling, const FramePlan& plan);
+    const Sampled& sampledFor(const FramePlan& plan);
+    Result<FrameTimes> time(const FramePlan& plan);
+    nlohmann::json countersOf(const FramePlan& plan);
+    Result<nlohmann::json> savePictures(const std::string& id,
+                                        const std::vector<glm::dvec4>& picture);
+
+    Stage& stage_;
+    const ErrorOptions& options_;
+    ErrorStore& store_;
+    const std::vector<glm::dvec4>& reference_;
+    Progress progress_;
+    std::optional<Sampled> sampled_;
+    std::vector<std::pair<FramePlan, nlohmann::json>>
+        counted_; // work does not depend on the target
+};
+
+} // namespace slabcast
