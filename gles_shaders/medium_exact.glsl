@@ -1,5 +1,6 @@
 // Where a device may hold 16 bits: nowhere; this is what is drawn. medium_half.glsl is the other.
 #define inOpacity(x) (x)
 #define inSum(x) (x)
-#define inMaterial(x) (x)
+#define inColour(x) (x)
+#define inExtinction(x) (x)
 #define inLight(x) (x)

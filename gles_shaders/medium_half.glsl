@@ -14,5 +14,6 @@ vec4 halved(vec4 x) { return vec4(halved(x.xyz), halved(x.w)); }
 #define whereSet(bit, x) ((HALF_GROUPS & bit) != 0 ? halved(x) : (x))
 #define inOpacity(x) whereSet(1, x)
 #define inSum(x) whereSet(2, x)
-#define inMaterial(x) whereSet(4, x)
+#define inColour(x) whereSet(4, x)
+#define inExtinction(x) whereSet(16, x)
 #define inLight(x) whereSet(8, x)

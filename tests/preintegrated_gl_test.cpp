@@ -177,7 +177,7 @@ TEST_F(PreintegratedTest, EightBitsDifferByTheirSteps) {
         const FramePlan narrow = decide(scene, settings);
         EXPECT_LE(
             largestDifference(draw(scene, wide, view, kSize), draw(scene, narrow, view, kSize)),
-            3.0 * wide.planes / 510.0 + blendingBound(wide))
+            blendingBound(narrow) + blendingBound(wide))
             << layersPerPlane;
     }
 }

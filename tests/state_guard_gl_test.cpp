@@ -231,7 +231,7 @@ TEST_F(StateGuardGl, UnitsBeyondTheRestoredKeepTheirTextures) {
         gl::ColorTargets layer;
         EXPECT_TRUE(layer.resize(4, 4, {GL_RGBA8}).has_value());
     }
-    EXPECT_TRUE(uploadTable({glm::vec4(1.0F)}, caps()).has_value());
+    EXPECT_TRUE(uploadTable({glm::vec4(1.0F)}, false, caps()).has_value());
     const std::uint8_t byte = 1;
     EXPECT_TRUE(uploadBytes3d({&byte, 1}, {1, 1, 1}, caps()).has_value());
     EXPECT_EQ(integer(GL_ACTIVE_TEXTURE), GL_TEXTURE9);

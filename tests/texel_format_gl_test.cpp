@@ -363,7 +363,7 @@ TEST_F(TexelFormatGl, ClassifiedTexelsAreFilteredAndClamped) {
 
 TEST_F(TexelFormatGl, TableKeepsHalfFloatsAndIsNotFiltered) {
     const std::vector<glm::vec4> table = {{0.5F, 0.25F, 1.0F, 0.0F}, {1.0F, 0.75F, 0.0F, 2000.0F}};
-    const auto texture = uploadTable(table, caps());
+    const auto texture = uploadTable(table, false, caps());
     ASSERT_TRUE(texture.has_value()) << texture.error().detail;
     const auto pixels =
         drawRow(3,
@@ -373,7 +373,15 @@ TEST_F(TexelFormatGl, TableKeepsHalfFloatsAndIsNotFiltered) {
     EXPECT_EQ(pixels[0], table[0]);
     EXPECT_EQ(pixels[1], table[1]);
     EXPECT_EQ(pixels[2], table[0]);
-    EXPECT_EQ(uploadTable({}, caps()).error().code, ErrorCode::InvalidArgument);
+    const std::vector<glm::vec4> decades = {{0.1F, 0.2F, 0.3F, 1e-12F}, {0.0F, 0.0F, 0.0F, 1e4F}};
+    const auto wide = uploadTable(decades, true, caps());
+    ASSERT_TRUE(wide.has_value()) << wide.error().detail;
+    const auto kept =
+        drawRow(2, fragmentText("sampler2D", "    result = texelFetch(data, ivec2(i, 0), 0);"),
+                GL_TEXTURE_2D, wide->id());
+    EXPECT_EQ(kept[0], decades[0]);
+    EXPECT_EQ(kept[1], decades[1]);
+    EXPECT_EQ(uploadTable({}, false, caps()).error().code, ErrorCode::InvalidArgument);
 }
 
 TEST_F(TexelFormatGl, UploadRefusesWhatDoesNotFit) {

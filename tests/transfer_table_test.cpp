@@ -122,7 +122,11 @@ TEST(TransferTable, FaintStaysVisibleAndDenseStaysFinite) {
     const TransferFunction wide = tfOf({{.value = 0.0, .opacity = 1e-14},
                                         {.value = 1.0, .opacity = 0.5},
                                         {.value = 2.0, .opacity = 0.0}});
-    EXPECT_EQ(makeTable(wide, 0.0, 2.0, true, kDisplay).texels[0].w, 0x1p-24F);
+    const TransferTable table = makeTable(wide, 0.0, 2.0, true, kDisplay);
+    EXPECT_TRUE(table.wide);
+    EXPECT_NEAR(lookUp(table, 0.0).w, 1e-14, 1e-14 * 0x1p-23);
+    EXPECT_NEAR(lookUp(table, 1.0).w, std::log(2.0), std::log(2.0) * 0x1p-23);
+    EXPECT_FALSE(makeTable(faint, 0.0, 2.0, true, kDisplay).wide);
     const TransferFunction dense =
         tfOf({{.value = 0.0, .opacity = 0.0}, {.value = 1.0, .opacity = 1.0}}, 1e-6);
     const double densest = 24.0 * std::log(2.0) / 1e-6;
@@ -180,7 +184,7 @@ TEST(TransferTable, FollowsTheTfAtEveryTexel) {
         const TransferTable table = makeTable(tf, -40.0, 40.0, integers, kDisplay, 257);
         for (std::size_t k = 0; k < table.texels.size(); ++k) {
             const float alpha = table.texels[k].w;
-            RC_ASSERT(roundedToHalf(alpha) == alpha);
+            RC_ASSERT(!table.wide && roundedToHalf(alpha) == alpha);
             const double extinction = static_cast<double>(alpha) * table.extinctionPerMm;
             const TransferSample sample = evaluate(tf, valueOf(table, k));
             const double exact = extinctionPerMm(sample.opacity, 1.0);

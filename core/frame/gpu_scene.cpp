@@ -78,12 +78,13 @@ Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const g
 }
 
 Result<void> GpuScene::updateTable(const Scene& scene, const gl::Caps& caps) {
-    constexpr std::int64_t kBytesPerTexel = 8;
-    const PreintegratedTable* table = scene.preintegrated();
-    const std::size_t texels = table ? table->texels.size() : scene.table().texels.size();
-    tableBytes_ = static_cast<std::int64_t>(texels) * kBytesPerTexel;
-    return keep(table_, table ? uploadSquareTable(table->texels, caps)
-                              : uploadTable(scene.table().texels, caps));
+    if (const PreintegratedTable* square = scene.preintegrated()) {
+        tableBytes_ = static_cast<std::int64_t>(square->texels.size()) * 8;
+        return keep(table_, uploadSquareTable(square->texels, caps));
+    }
+    const TransferTable& table = scene.table();
+    tableBytes_ = static_cast<std::int64_t>(table.texels.size()) * (table.wide ? 16 : 8);
+    return keep(table_, uploadTable(table.texels, table.wide, caps));
 }
 
 Result<void> GpuScene::updateVolume(const Scene& scene, bool pre, const gl::Caps& caps) {

@@ -16,9 +16,11 @@ const char* name(Classification classification);
 const char* name(SkipStructure skip);
 
 /// Groups of operations that a device may do in 16 bits: a layer's opacity from its depth; the sum
-/// of layers; the table's interpolation and the premultiplied colour; light.
-inline constexpr int kHalfOpacity = 1, kHalfSum = 2, kHalfMaterial = 4, kHalfLight = 8;
-inline constexpr int kHalfAll = 15;
+/// of layers; colours between the table's, and premultiplied; light; extinction between the
+/// table's.
+inline constexpr int kHalfOpacity = 1, kHalfSum = 2, kHalfColor = 4, kHalfLight = 8;
+inline constexpr int kHalfExtinction = 16;
+inline constexpr int kHalfAll = 31;
 
 /// Lengths of segments that are written out layer by layer.
 inline constexpr std::array<int, 10> kUnrollLengths = {1, 2, 4, 8, 12, 16, 24, 32, 48, 64};

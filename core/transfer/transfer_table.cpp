@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/volume/half.h"
@@ -52,18 +53,28 @@ std::optional<Span> spanFor(const TransferFunction& tf, double dataMin, double d
     return Span{low, lastKnot, maxSize};
 }
 
-/// In the table's unit: a visible extinction stays visible.
-float halfExtinction(double extinction) {
-    return extinction <= 0.0
-               ? 0.0F
-               : std::max(kSmallestHalf, roundedToHalf(static_cast<float>(extinction)));
-}
-
+/// A visible extinction stays visible, were it 38 decades below the largest.
 glm::vec4 texelOf(const TransferSample& sample, const TransferFunction& tf, double unitPerMm,
                   CompositingSpace space) {
-    const glm::vec3 color(colorIn(space, sample.color));
-    return {roundedToHalf(color.x), roundedToHalf(color.y), roundedToHalf(color.z),
-            halfExtinction(extinctionPerMm(sample.opacity, tf.opacityUnitMm) / unitPerMm)};
+    const double extinction = extinctionPerMm(sample.opacity, tf.opacityUnitMm) / unitPerMm;
+    const auto kept = static_cast<float>(extinction);
+    const float least = extinction > 0.0 ? std::numeric_limits<float>::min() : 0.0F;
+    return {glm::vec3(colorIn(space, sample.color)), std::max(kept, least)};
+}
+
+/// Whether fp16 would lose digits of a point's extinction. (On its way to zero a ramp passes what
+/// fp16 loses, but not for longer than a texel.)
+bool spansMoreThanHalfs(const TransferFunction& tf, double unitPerMm) {
+    return std::any_of(tf.points.begin(), tf.points.end(), [&](const TransferPoint& point) {
+        const double extinction = extinctionPerMm(point.opacity, tf.opacityUnitMm) / unitPerMm;
+        return extinction > 0.0 && extinction < double{kSmallestNormalHalf};
+    });
+}
+
+/// What is visible stays visible.
+glm::vec4 narrowed(const glm::vec4& t) {
+    const float extinction = t.a > 0.0F ? std::max(kSmallestHalf, roundedToHalf(t.a)) : 0.0F;
+    return {roundedToHalf(t.x), roundedToHalf(t.y), roundedToHalf(t.z), extinction};
 }
 
 /// Gives every peak that lies between two texels and above both to the nearer one, but not to an
@@ -106,15 +117,18 @@ TransferTable makeTable(const TransferFunction& tf, double dataMin, double dataM
     SLABCAST_EXPECTS(dataMin <= dataMax, dataMax - dataMin);
     SLABCAST_EXPECTS(maxSize >= 4, maxSize);
     const double unitPerMm = extinctionUnitPerMm(tf);
+    const bool wide = spansMoreThanHalfs(tf, unitPerMm);
     const auto toTexel = [&](const TransferSample& sample) {
-        return texelOf(sample, tf, unitPerMm, space);
+        const glm::vec4 texel = texelOf(sample, tf, unitPerMm, space);
+        return wide ? texel : narrowed(texel);
     };
     const std::optional<Span> span = spanFor(tf, dataMin, dataMax, integerData, maxSize);
     if (!span) {
         const double width = std::max(1.0, std::abs(dataMin) * 1e-3); // any that is not zero
-        return {dataMin, dataMin + width, {2, toTexel(evaluate(tf, dataMin))}, unitPerMm};
+        return {dataMin, dataMin + width, {2, toTexel(evaluate(tf, dataMin))}, unitPerMm, wide};
     }
-    TransferTable table{span->first, span->last, std::vector<glm::vec4>(span->size), unitPerMm};
+    TransferTable table{span->first, span->last, std::vector<glm::vec4>(span->size), unitPerMm,
+                        wide};
     std::vector<TransferSample> samples;
     for (std::size_t texel = 0; texel < table.texels.size(); ++texel) {
         samples.push_back(evaluate(tf, table.valueAt(texel)));

@@ -7,7 +7,8 @@
 namespace slabcast {
 
 inline constexpr float kLargestHalf = 65504.0F;
-inline constexpr float kSmallestHalf = 0x1p-24F; // the smallest positive one, subnormal
+inline constexpr float kSmallestNormalHalf = 0x1p-14F; // below, digits are lost
+inline constexpr float kSmallestHalf = 0x1p-24F;       // the smallest positive one, subnormal
 
 /// IEEE binary16 bits, rounded to nearest even as GL does; beyond the largest half: infinity.
 /// Source: F. Giesen, float_to_half_fast3_rtne (public domain). Tested by: texels_test.cpp

@@ -154,9 +154,9 @@ Result<gl::Texture> upload3d(const char* label, const Layout& layout, glm::ivec3
     return texture;
 }
 
-/// A transfer table, RGBA16F.
-Result<gl::Texture> uploadTable2d(glm::i64vec2 size, GLint filter, GLenum type, const void* texels,
-                                  const gl::Caps& caps) {
+/// A transfer table.
+Result<gl::Texture> uploadTable2d(glm::i64vec2 size, GLenum format, GLint filter, GLenum type,
+                                  const void* texels, const gl::Caps& caps) {
     // As wide as high, or one row: no table is higher than wide.
     if (size.x == 0 || size.x > caps.maxTextureSize) {
         return fail(ErrorCode::InvalidArgument, "a transfer table of " + std::to_string(size.x) +
@@ -170,7 +170,7 @@ Result<gl::Texture> uploadTable2d(glm::i64vec2 size, GLint filter, GLenum type, 
     gl::BindTexture(GL_TEXTURE_2D, texture.id());
     const auto columns = static_cast<GLsizei>(size.x);
     const auto rows = static_cast<GLsizei>(size.y);
-    gl::TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA16F, columns, rows);
+    gl::TexStorage2D(GL_TEXTURE_2D, 1, format, columns, rows);
     setSampling(GL_TEXTURE_2D, filter);
     gl::TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, columns, rows, GL_RGBA, type, texels);
     if (const auto uploaded = takeUploadError("the transfer table"); !uploaded) {
@@ -236,16 +236,17 @@ Result<gl::Texture> uploadBytes3d(std::span<const std::uint8_t> bytes, glm::ivec
     return upload3d("skip data", kByteLayout, dims, bytes.data(), caps);
 }
 
-Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, const gl::Caps& caps) {
-    return uploadTable2d({static_cast<std::int64_t>(texels.size()), 1}, GL_NEAREST, GL_FLOAT,
-                         texels.data(), caps);
+Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, bool wide,
+                                const gl::Caps& caps) {
+    return uploadTable2d({static_cast<std::int64_t>(texels.size()), 1},
+                         wide ? GL_RGBA32F : GL_RGBA16F, GL_NEAREST, GL_FLOAT, texels.data(), caps);
 }
 
 Result<gl::Texture> uploadSquareTable(const std::vector<glm::u16vec4>& halfs,
                                       const gl::Caps& caps) {
     const auto edge = std::llround(std::sqrt(static_cast<double>(halfs.size())));
     SLABCAST_EXPECTS(edge * edge == static_cast<std::int64_t>(halfs.size()), edge);
-    return uploadTable2d({edge, edge}, GL_LINEAR, GL_HALF_FLOAT, halfs.data(), caps);
+    return uploadTable2d({edge, edge}, GL_RGBA16F, GL_LINEAR, GL_HALF_FLOAT, halfs.data(), caps);
 }
 
 } // namespace slabcast

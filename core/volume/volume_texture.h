@@ -59,8 +59,9 @@ Result<gl::Texture> uploadClassified(const glm::u8vec4* texels, glm::ivec3 dims,
 Result<gl::Texture> uploadBytes3d(std::span<const std::uint8_t> bytes, glm::ivec3 dims,
                                   const gl::Caps& caps);
 
-/// A transfer table: RGBA16F, width x 1, for texelFetch on a sampler2D.
-Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, const gl::Caps& caps);
+/// A transfer table: RGBA16F, or RGBA32F where `wide`; width x 1, for texelFetch on a sampler2D.
+Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, bool wide,
+                                const gl::Caps& caps);
 
 /// A pre-integrated table: RGBA16F, as wide as high, filtered.
 Result<gl::Texture> uploadSquareTable(const std::vector<glm::u16vec4>& halfs, const gl::Caps& caps);

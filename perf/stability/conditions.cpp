@@ -29,10 +29,6 @@ Settings settingsOf(const Method& method, const Spacing& spacing) {
     return settings;
 }
 
-double roundingPerPlane(TargetFormat target) {
-    return target == TargetFormat::Rgba8 ? 3.0 / 510.0 : 0x1p-11;
-}
-
 const char* const kRoundingReason =
     "the target rounds at every plane that holds something (fp16: 2^-11; 8 bits: 1/510 for colour, "
     "opacity and their product each)";

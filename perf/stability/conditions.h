@@ -1,6 +1,7 @@
 #pragma once
 
 #include "perf/stability/bench.h"
+#include "perf/stability/reference_picture.h"
 
 namespace slabcast::stability {
 
@@ -14,9 +15,7 @@ inline constexpr Spacing kSpacings[] = {{"a layer per voxel", 1.0}, {"a layer pe
 
 Settings settingsOf(const Method& method, const Spacing& spacing);
 
-/// What a plane may add to a pixel: fp16 rounds once, by 2^-11 at most where a device cuts off; 8
-/// bits round the fragment's colour, its opacity and their product with what is behind.
-double roundingPerPlane(TargetFormat target);
+/// Of roundingPerPlane().
 extern const char* const kRoundingReason;
 
 /// So far away that all rays are parallel within a few hundredths, and that `halfHeightMm` about

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/parallel.h"
+#include "perf/stability/reference_picture.h"
 #include "perf/stability/sampling_bound.h"
 
 namespace slabcast::stability {
@@ -122,9 +123,6 @@ std::vector<double> blendingBounds(const Exhibit& exhibit, const FramePlan& plan
                                    double extinctionPerMm) {
     const RayFrame frame =
         makeRayFrame(exhibit.view, exhibit.viewport(), exhibit.scene.geometry(), plan.lattice);
-    const bool eightBits = plan.target == TargetFormat::Rgba8;
-    const double deepest = eightBits ? 1.0 / 510.0 : 0x1p-11;
-    const double others = eightBits ? 3.0 / 510.0 : 0x1p-11;
     return perPixel<double>(exhibit, [&](glm::dvec2 fragCoord) {
         const LatticeRay ray = rayAt(frame, fragCoord);
         const LayerRange range = layersOf(ray, plan.lattice.total);
@@ -137,7 +135,9 @@ std::vector<double> blendingBounds(const Exhibit& exhibit, const FramePlan& plan
             const double inFront =
                 plane * double(plan.layersPerPlane) - plan.lattice.total / 2.0 - ray.entry;
             const double seen = std::exp(-depthPerLayer * std::max(0.0, inFront - 1.0));
-            sum += (plane == last ? deepest : others) * seen;
+            sum +=
+                (plane == last ? roundingOfDeepest(plan.target) : roundingPerPlane(plan.target)) *
+                seen;
         }
         return sum;
     });

@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "perf/stability/exhibit.h"
+#include "perf/stability/reference_picture.h"
 #include "perf/stability/volumes.h"
 
 namespace slabcast::stability {
@@ -38,7 +39,7 @@ void opaqueVoxelCase(Bench& bench, const Scene& scene, const Method& method, Lat
         settings.termination = Settings{}.termination;
     }
     // Half a layer next to the eye at the least lets 2^-12 through, the next one 2^-24 of it.
-    const double perPlane = method.target == TargetFormat::Rgba8 ? 3.0 / 510.0 : 0x1p-11;
+    const double perPlane = roundingPerPlane(method.target);
     Case result{.family = kFamily,
                 .name = std::string("eye inside an opaque voxel, ") + name(lattice) + ", " +
                         (terminates ? "left early, " : "") + method.name,

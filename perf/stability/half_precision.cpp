@@ -56,14 +56,18 @@ double opacityBound(const Ray& ray) {
 double sumBound(const Ray& ray) {
     return 2.0 * kUnit * (ray.layersOfSegment + 2.0) * ray.opacity;
 }
-double materialBound(const Ray& ray) {
-    return 16.0 * kUnit * ray.opacity;
+double extinctionBound(const Ray& ray) {
+    return 12.0 * kUnit * ray.opacity;
+}
+double colorBound(const Ray& ray) {
+    return 4.0 * kUnit * ray.opacity;
 }
 double lightBound(const Ray& ray) {
     return 16.0 * kUnit * ray.opacity;
 }
 double everyBound(const Ray& ray) {
-    return opacityBound(ray) + sumBound(ray) + materialBound(ray) + lightBound(ray);
+    return opacityBound(ray) + sumBound(ray) + extinctionBound(ray) + colorBound(ray) +
+           lightBound(ray);
 }
 /// Half a step of 8 bits.
 double unseenBound(const Ray& /*ray*/) {
@@ -87,15 +91,16 @@ constexpr Group kGroups[] = {
      "each of a segment's n layers rounds the sum once and its own share twice: u (n + 2) A, and "
      "as "
      "much through what the segment covers"},
-    {"material", kHalfMaterial, false, materialBound,
-     "texels within a factor of two interpolate to 6u of the extinction and 3u of the colour, "
-     "whose "
-     "product with the opacity adds u: (2 x 6u + 4u) A"},
+    {"extinction", kHalfExtinction, false, extinctionBound,
+     "texels within a factor of two interpolate to 6u of the extinction, and so of the opacity: "
+     "2 x 6u A"},
+    {"colour", kHalfColor, false, colorBound,
+     "texels interpolate to 3u, whose product with the opacity adds u: 4u A"},
     {"light", kHalfLight, true, lightBound,
      "the 32nd power makes 32u of u, a quarter of which is the highlight's share: 8u; eight more "
      "roundings of values up to 1: 16u A"},
-    {"all", kHalfAll, true, everyBound, "the sum of the four groups' bounds"},
-    {"declared mediump (material and light)", kHalfMaterial + kHalfLight, true, unseenBound,
+    {"all", kHalfAll, true, everyBound, "the sum of the five groups' bounds"},
+    {"declared mediump (colour and light)", kHalfColor + kHalfLight, true, unseenBound,
      "what the shaders declare mediump must stay below half a step of 8 bits"}};
 
 /// Into float32, so that the target's own rounding does not hide the segment's.

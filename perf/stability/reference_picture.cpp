@@ -343,9 +343,16 @@ PixelReference ReferencePicture::at(glm::dvec2 fragCoord) const {
     return result;
 }
 
+double roundingPerPlane(TargetFormat target) {
+    return target == TargetFormat::Rgba8 ? 3.0 / 510.0 : 0x1p-11;
+}
+
+double roundingOfDeepest(TargetFormat target) {
+    return target == TargetFormat::Rgba8 ? 1.0 / 510.0 : 0x1p-11;
+}
+
 double blendingBound(const FramePlan& plan) {
-    const double unit = plan.target == TargetFormat::Rgba8 ? 1.0 / 510.0 : 0x1p-11;
-    return plan.planes * unit;
+    return roundingOfDeepest(plan.target) + (plan.planes - 1) * roundingPerPlane(plan.target);
 }
 
 } // namespace slabcast

@@ -48,8 +48,12 @@ private:
     std::vector<double> values_; // of all voxels
 };
 
-/// What blending may add: every plane rounds once more. 8 bits round to the nearest step, half of
-/// 1/255; fp16's steps are 2^-11 at most below 1, and GL lets a device take either neighbour.
+/// What one plane's blending may add. fp16's steps are 2^-11 at most below 1, and GL lets a device
+/// take either neighbour. 8 bits hold colour, opacity and the opacity's product with what is
+/// behind, and a device may round each to the nearest step; of the deepest plane only the colour.
+double roundingPerPlane(TargetFormat target);
+double roundingOfDeepest(TargetFormat target);
+/// Of all planes.
 double blendingBound(const FramePlan& plan);
 
 } // namespace slabcast

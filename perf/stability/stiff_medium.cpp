@@ -10,8 +10,8 @@ namespace slabcast::stability {
 namespace {
 
 const char* const kUniformReason =
-    "alpha = 1 - exp(-extinction x length in the box); extinction is off by 2^-12 of itself or by "
-    "the smallest half of the table's unit, length by 2^-18 of itself (float32's ray), alpha by "
+    "alpha = 1 - exp(-extinction x length in the box); extinction is off by 2^-11 of itself "
+    "(the table's fp16), length by 2^-18 of itself (float32's ray), alpha by "
     "2^-23 per layer and 2^-18 of itself (float32's sums and exp), and a target's rounding at a "
     "plane (fp16: 2^-11, but 2^-10 of alpha at most, or the smallest step, 2^-24; 8 bits: 1/510 "
     "for colour, opacity and, but for the deepest plane, their product each) shows through what "
@@ -25,24 +25,22 @@ struct UniformPixel {
 
 /// Every plane's rounding is seen through the planes before it: a geometric sum.
 double blendingOf(const FramePlan& plan, double depthPerLayer, double layers, double alpha) {
-    const bool eightBits = plan.target == TargetFormat::Rgba8;
-    const double ofHalf = std::max(0x1p-11 * std::min(1.0, 2.0 * alpha), 0x1p-24);
+    // A half's step goes with alpha.
+    const double share =
+        plan.target == TargetFormat::Rgba8 ? 1.0 : std::max(std::min(1.0, 2.0 * alpha), 0x1p-13);
     const double planeOpacity = -std::expm1(-depthPerLayer * plan.layersPerPlane);
     const double planesMet =
         std::min<double>(plan.planes, std::ceil(layers / plan.layersPerPlane) + 1.0);
     const double seen = std::min(planesMet - 1.0, 1.0 / planeOpacity + 1.0);
-    return (eightBits ? 1.0 / 510.0 : ofHalf) + seen * (eightBits ? 3.0 / 510.0 : ofHalf);
+    return share * (roundingOfDeepest(plan.target) + seen * roundingPerPlane(plan.target));
 }
 
 /// Of a ray that enters and leaves the box by the faces at its ends.
-UniformPixel uniformPixel(const Scene& scene, const FramePlan& plan, const LatticeRay& ray,
-                          double extinction) {
+UniformPixel uniformPixel(const FramePlan& plan, const LatticeRay& ray, double extinction) {
     const double layers = ray.exit - ray.entry;
     const double lengthMm = layers * ray.layerLengthMm;
     const double depth = extinction * lengthMm;
-    const double unit = extinctionUnitPerMm(scene.look().tf);
-    const double depthError =
-        lengthMm * std::max(extinction * 0x1p-12, unit * 0x1p-24) + depth * 0x1p-18;
+    const double depthError = depth * (0x1p-11 + 0x1p-18);
     const double alpha = -std::expm1(-depth);
     const double most = std::exp(-depth) * -std::expm1(-depthError);
     const double least = std::exp(-std::max(0.0, depth - depthError)) - std::exp(-depth);
@@ -76,7 +74,7 @@ Judgement judge(const Medium& medium, const FramePlan& plan, const Picture& pict
             if (!extinction) {
                 continue;
             }
-            const UniformPixel meant = uniformPixel(medium.scene, plan, ray, *extinction);
+            const UniformPixel meant = uniformPixel(plan, ray, *extinction);
             const std::size_t i = static_cast<std::size_t>(y) * medium.size.x + x;
             const double share =
                 std::abs(static_cast<double>(picture.pixels[i].a) - meant.alpha) / meant.bound;
