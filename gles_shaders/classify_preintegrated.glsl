@@ -40,7 +40,9 @@ vec4 meanBetween(float front, float back) {
     float above = max(high - max(low, last), 0.0);
     precise vec4 mean = (within * abs(place.y - place.x) + tableEnds[0] * below +
                          tableEnds[1] * above) / (high - low);
-    return low < high ? mean : within;
+    // Beyond an end exactly that end's texel: the filter's weights could let its neighbour in.
+    vec4 same = low >= last ? tableEnds[1] : high <= 0.0 ? tableEnds[0] : within;
+    return low < high ? mean : same;
 }
 
 vec4 classify(vec3 uvw, Ray ray, int i) {

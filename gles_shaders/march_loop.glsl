@@ -23,5 +23,5 @@ vec4 march(Ray ray, ivec2 range) {
             break;
         }
     }
-    return sum;
+    return closed(sum, i < range.y);
 }

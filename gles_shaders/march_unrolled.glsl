@@ -3,11 +3,16 @@
 struct Walk {
     int decided; // layers before this one are known to be free or not
     bool free;
+    bool left; // early
     vec4 sum;
 };
 
 void compositeLayer(Ray ray, int i, int end, inout Walk walk) {
-    if (i >= end || terminated(walk.sum.a)) {
+    if (i >= end) {
+        return;
+    }
+    if (terminated(walk.sum.a)) {
+        walk.left = true;
         return;
     }
     vec3 uvw = samplePosition(ray, i);
@@ -24,8 +29,8 @@ void compositeLayer(Ray ray, int i, int end, inout Walk walk) {
 }
 
 vec4 march(Ray ray, ivec2 range) {
-    Walk walk = Walk(range.x, false, vec4(0.0));
+    Walk walk = Walk(range.x, false, false, vec4(0.0));
 #define COMPOSITE_LAYER(k) compositeLayer(ray, range.x + k, range.y, walk);
     REPEAT_LAYERS(COMPOSITE_LAYER)
-    return walk.sum;
+    return closed(walk.sum, walk.left);
 }

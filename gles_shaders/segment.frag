@@ -19,5 +19,5 @@ void main() {
     if (range.x < range.y && segmentIsEmpty(ray, range)) {
         live.y = live.x;
     }
-    writeResult(closed(march(ray, live)), range);
+    writeResult(march(ray, live), range);
 }

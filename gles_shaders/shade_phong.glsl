@@ -1,7 +1,8 @@
 // Blinn-Phong with a head light: light and eye are in one direction, so the half vector is too. The
 // gradient is by central differences of the trilinear field, half a voxel to each side, carried to
-// patient space; where it is too small to point anywhere the colour stays unlit. Light is mediump;
-// differences of neighbouring values would lose their digits in it.
+// patient space; where it is too small to point anywhere the colour stays unlit. Light is mediump, but not
+// what would lose its digits there: differences of neighbouring values, and what is raised to a high
+// power.
 mediump vec3 shade(mediump vec3 colour, vec3 uvw, Ray ray) {
     vec3 h = 0.5 / fieldSize();
     vec3 difference = vec3(
@@ -15,9 +16,8 @@ mediump vec3 shade(mediump vec3 colour, vec3 uvw, Ray ray) {
     vec3 toEye = -normalize(vec3(dot(patientRow[0].xyz, ray.step), dot(patientRow[1].xyz, ray.step),
                                  dot(patientRow[2].xyz, ray.step)));
     float facing = abs(dot(gradient, toEye)) / max(steepness, 1.0e-20);
-    mediump float f = inLight(facing);
-    mediump float diffuse = inLight(material.x + inLight(material.y * f));
-    mediump float highlight = inLight(material.z * inLight(pow(f, material.w)));
+    mediump float diffuse = inLight(material.x + inLight(material.y * inLight(facing)));
+    mediump float highlight = inLight(material.z * pow(facing, material.w));
     mediump vec3 lit = inLight(inLight(colour * diffuse) + highlight);
     mediump float trust = inLight(smoothstep(gradientRow[0].w, 2.0 * gradientRow[0].w, steepness));
     mediump vec3 change = inLight(min(lit, vec3(1.0)) - colour);

@@ -50,6 +50,12 @@ class Row:
         volume, skip = number(counters.get("volume_fetches")), number(counters.get("skip_fetches"))
         return None if volume is None else volume + (skip or 0)
 
+    @property
+    def frames(self):
+        """How many were timed; None where that is not said."""
+        count = number(page_input.section(self.raw, "frameMs").get("n"))
+        return None if count is None else int(count)
+
     def key(self, names):
         return tuple(str(self.raw.get(name)) for name in names)
 
@@ -98,6 +104,12 @@ class Errors:
         """The most accurate row in that time; None where none is that fast."""
         return min((row for row in self.rows if row.median_ms <= ms and row.classification == classification),
                    key=lambda row: row.rmse, default=None)
+
+    @property
+    def measured_earlier(self):
+        """Rows from before this run began; dates are of one form and in order as text."""
+        started = str(self.raw.get("started", ""))
+        return [row for row in self.rows if str(row.raw.get("date", started)) < started]
 
     def families(self):
         """Rows that differ in their spacing alone, coarse to fine."""

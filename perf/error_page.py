@@ -116,7 +116,10 @@ def run_facts(errors):
     spacing = " × ".join(figures(s) for s in volume.get("spacingMm") or [])
     camera = conditions.get("camera")
     tolerance, seconds = number(reference.get("tolerance")), number(reference.get("seconds"))
-    frames = conditions.get("framesPerRow")
+    frames = conditions.get("framesPerRowAtMost")
+    earlier = len(errors.measured_earlier)
+    resumed = (f'<p class="note">{plural(earlier, "row")} {"was" if earlier == 1 else "were"} measured earlier, in a '
+               "run that was cut short.</p>") if earlier else ""
     settings = " · ".join(esc(conditions[name]) for name in ("space", "lattice") if conditions.get(name))
     entries = [entry for entry in errors.raw.get("leftOut") or [] if isinstance(entry, dict)]
     left_out = "".join(
@@ -127,7 +130,7 @@ def run_facts(errors):
         ("Volume", " · ".join(filter(None, (esc(volume.get("type", "")), esc(volume.get("unit", "")),
                                             f"{spacing} mm" if spacing else "", mebibytes(volume.get("bytes")))))),
         ("Picture", by(conditions.get("size"))),
-        ("Camera", f"{', '.join(figures(v) for v in camera)}; {figures(conditions.get('fovDegrees'))}° wide"
+        ("Camera", f"{', '.join(figures(v) for v in camera)}; {figures(conditions.get('fovDegrees'))}° high"
          if isinstance(camera, list) else None),
         ("Transfer function", esc(conditions.get("transferFunction", ""))),
         ("Space, lattice", settings),
@@ -135,9 +138,9 @@ def run_facts(errors):
         ("Skipping, form", " · ".join(esc(conditions[name]) for name in ("skip", "form") if conditions.get(name))),
         ("Tight polygons", on_off(conditions.get("tighten"))),
         ("Reference", f"float64, to {scientific(tolerance, 1)} relative; {figures(seconds)} s" if tolerance else None),
-        ("Frames per row", f"{esc(frames)}{' (quick run)' if conditions.get('quick') else ''}" if frames else None),
+        ("Frames per row", f"at most {esc(frames)}{' (quick run)' if conditions.get('quick') else ''}" if frames else None),
         ("Rows", len(errors.rows)),
-    ]) + command(errors.raw) + left_out
+    ]) + command(errors.raw) + resumed + left_out
 
 
 def _front_list(errors, front, letter):
@@ -216,7 +219,7 @@ def _order(row):
 
 def all_rows(errors):
     head = ["setting", "front", "RMSE", "PSNR, dB", "max", "mean ΔE", "p99.9 ΔE", "sampling", "table", "GPU",
-            "order: total, sampling", "ms, median", "min – max", "fetches, M", "planes × layers", "classification",
+            "order: total, sampling", "ms, median", "min – max", "frames", "fetches, M", "planes × layers", "classification",
             "target", "termination", "jitter", "command"]
     lines = []
     for row in errors.sorted_rows:
@@ -230,7 +233,7 @@ def all_rows(errors):
             figures(row.error("total", "psnr")), scientific(row.error("total", "max")),
             figures(row.error("total", "meanDeltaE")), figures(row.error("total", "p999DeltaE")),
             *(scientific(row.error(name)) for name in PARTS[1:]), _order(row), f"<b>{figures(row.median_ms)}</b>",
-            f"{figures(row.low_ms)} – {figures(row.high_ms)}", millions(row.fetches),
+            f"{figures(row.low_ms)} – {figures(row.high_ms)}", esc(row.frames or MISSING), millions(row.fetches),
             f"{row.planes}×{esc(plan.get('layersPerPlane', '?'))}",
             esc(NAMES.get(row.classification, row.classification)),
             esc(NAMES.get(row.target, row.target)), esc(say(row, "termination")), on_off(row.jitter),
@@ -238,8 +241,9 @@ def all_rows(errors):
             if row.raw.get("command") else MISSING])
     css = ["front" if row.rank else "" for row in errors.sorted_rows]
     note = ("The front’s rows first, then the others, each the most accurate first. Sampling, table and GPU are the "
-            "RMSE of the error’s three parts: what discrete samples cost, what the transfer function’s table costs, "
-            "and what the GPU’s arithmetic, texels, filtering and target cost. Order: how fast the error falls from "
+            "RMSE of the error’s three parts: what finite layers and classifying first cost, what the transfer "
+            "function’s table costs, and what texel format, filter, float32, termination and blending into the target "
+            "cost. Order: how fast the error falls from "
             "the next coarser spacing to this one. ΔE is CIE Delta E 2000.")
     return f'<p class="note">{note}</p><div class="bleed">{table(head, lines, css="rows", row_css=css)}</div>'
 

@@ -283,7 +283,8 @@ def key_of_rows(errors, ratios=True, front=False, lines=False):
 
 
 def key_of_parts():
-    texts = {"gpu": "GPU: arithmetic, texels, target"}
+    texts = {"sampling": "sampling: finite layers, classifying first",
+             "gpu": "GPU: texel format, filter, float32, termination, blending"}
     entries = [(texts.get(part, part), colour, marker, False, " ".join(f"{d:g}" for d in dashes))
                for part, (colour, dashes, marker, _) in PART_STYLES.items()]
     return key(entries + [(f"slope of order {order}", MUTED, None, False, " ".join(f"{d:g}" for d in dashes))

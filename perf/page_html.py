@@ -118,13 +118,16 @@ def section(title, body, anchor=""):
     return f"<section{name}><h2>{title}</h2>{body}</section>" if body else ""
 
 
-def masthead(kicker, title, line, device, rest):
-    """The page's head, with a warning where no GPU drew; `rest` is what was found."""
+SOFTWARE_TIMES = ("these milliseconds say nothing about a headset. Compare rows of this page with one another, and "
+                  "read the work counters, which do not depend on speed.")
+
+
+def masthead(kicker, title, line, device, rest, of_software=SOFTWARE_TIMES):
+    """The page's head, with a warning of what it means where no GPU drew; `rest` is what was found."""
     notice = ""
     if device.get("software"):
         notice = ('<p class="notice"><strong>Drawn by a software driver.</strong> The processor stands in for a '
-                  "GPU: these milliseconds say nothing about a headset. Compare rows of this page with one "
-                  "another, and read the work counters, which do not depend on speed.</p>")
+                  f"GPU: {of_software}</p>")
     return (f'<header><p class="kicker">Slabcast · {kicker}</p><h1>{title}</h1>'
             f'<p class="lede">{line}</p>{notice}{rest}</header>')
 

@@ -49,7 +49,8 @@ def row(classification, target, termination, jitter, spacing, layers):
         "error": {"total": errors(math.hypot(sampling, table, gpu)), "sampling": errors(sampling),
                   "table": errors(table), "gpu": errors(gpu)},
         "order": {"total": 0.9 * order, "sampling": order, "table": None, "gpu": None},
-        "coarser": None, "frameMs": {"median": ms, "min": 0.95 * ms, "max": 1.2 * ms, "p10": ms, "p90": ms, "n": 5},
+        "date": "2026-01-02T10:00:05Z", "coarser": None,
+        "frameMs": {"median": ms, "min": 0.95 * ms, "max": 1.2 * ms, "p10": ms, "p90": ms, "n": 4},
         "counters": {"fragments": 9000 * planes, "layers_evaluated": fetches, "layers_skipped": 2 * fetches,
                      "volume_fetches": fetches, "skip_fetches": 900 * (planes + 20)},
         "command": f"slabcast render skull.nrrd -o {name}.png --layer-spacing {spacing}",
@@ -81,13 +82,14 @@ def measured(spacings=(2, 0.5), layers=(1, 16, 0), jitters=(False, True), termin
     rows = [row(*settings) for settings in itertools.product(
         CLASSIFICATIONS, ("rgba8", "rgba16f"), terminations, jitters, spacings, layers)]
     return {
-        "command": "slabcast error skull.nrrd --out err --quick", "commit": "abc1234", "date": "2026-01-02",
+        "command": "slabcast error skull.nrrd --out err --quick", "commit": "abc1234", "date": "2026-01-02T10:00:09Z",
+        "started": "2026-01-02T10:00:00Z",
         "device": {"vendor": "Maker", "renderer": "Test <GPU> & Co", "version": "OpenGL ES 3.2", "software": True},
         "volume": {"name": "skull", "dims": [256, 256, 108], "type": "int16", "unit": "HU", "spacingMm": [1, 1, 2],
                    "bytes": 14155776},
         "conditions": {"size": [160, 160], "camera": [0, 10, 2.5], "fovDegrees": 40, "transferFunction": "CT bone",
                        "space": "display", "lattice": "planar", "tighten": True, "skip": "auto", "form": "auto",
-                       "texelFormat": "r16", "smallestVoxelEdgeMm": 1.0, "framesPerRow": 5, "quick": True},
+                       "texelFormat": "r16", "smallestVoxelEdgeMm": 1.0, "framesPerRowAtMost": 5, "quick": True},
         "leftOut": [{"classification": "emission", "why": "this device lacks what it needs"}],
         "reference": {"seconds": 6.1, "tolerance": 1e-10, "size": [160, 160], "picture": "pictures/reference.png"},
         "rows": rows, "front": front_of(rows, milliseconds), "frontByFetches": front_of(rows, fetches)}
@@ -163,6 +165,17 @@ class WholePageTest(unittest.TestCase):
                          "1e−10 relative", "this device lacks what it needs", self.data["command"]):
             self.assertIn(expected, self.text)
 
+    def test_says_how_many_frames_and_how_high_the_view_is(self):
+        self.assertIn("at most 5 (quick run)", self.text)
+        self.assertIn("<th scope=col>frames</th>", self.text)
+        self.assertEqual(len(re.findall(r" – [\d.,]+</td><td>4</td>", self.text)), len(self.data["rows"]))
+        self.assertIn("40° high", self.text)
+
+    def test_parts_are_what_they_hold(self):
+        for words in ("finite layers and classifying first", "sampling: finite layers, classifying first",
+                      "termination and blending into the target", "float32, termination, blending"):
+            self.assertIn(words, self.text)
+
     def test_shows_the_reference_and_two_pictures_of_each_of_the_front(self):
         self.assertEqual(self.text.count("<img "), 1 + 2 * len(self.data["front"]))
         self.assertEqual(self.text.count("difference × 64"), len(self.data["front"]))
@@ -205,6 +218,16 @@ class ErrorReportTest(unittest.TestCase):
         self.assertEqual(table_rows(text), [("front", kept["id"])])
         for missing in ("Convergence", "Error over fetches", "jitter costs", "RGBA8 blending", "Pictures of"):
             self.assertNotIn(missing, text)
+
+    def test_tells_rows_of_an_earlier_run(self):
+        def told(count):
+            data = measured(layers=(0,), jitters=(False,))
+            for entry in data["rows"][:count]:
+                entry["date"] = "2026-01-01T23:00:00Z"
+            write(self.folder, data)
+            self.assertEqual(run(self.folder).returncode, 0)
+            return re.findall(r"(\d+ rows? \w+) measured earlier", (self.folder / "report.html").read_text())
+        self.assertEqual([told(0), told(1), told(3)], [[], ["1 row was"], ["3 rows were"]])
 
     def test_refuses_what_is_no_measurement_in_one_line(self):
         self.refusal("no such file")

@@ -8,17 +8,21 @@
 namespace slabcast {
 namespace {
 
-const SceneLabel kSkull{"skull 8x8x8", "bone", CompositingSpace::Display};
-const SceneLabel kFoot{"foot 8x8x8", "bone", CompositingSpace::Display};
-const SceneLabel kHead{"head 8x8x8", "skin", CompositingSpace::Display};
+const SceneLabel kSkull{"skull 8x8x8", "bone", "a", CompositingSpace::Display};
+const SceneLabel kFoot{"foot 8x8x8", "bone", "b", CompositingSpace::Display};
+const SceneLabel kHead{"head 8x8x8", "skin", "c", CompositingSpace::Display};
 
 constexpr Sampling kCoarse{.layerSpacingVoxels = 4.0, .termination = {}};
 constexpr Sampling kMiddle{.layerSpacingVoxels = 1.0, .termination = {}};
 constexpr Sampling kFine{.layerSpacingVoxels = 0.25, .termination = {}};
 
 MeasuredError measured(const SceneLabel& scene, const Sampling& sampling, double rmse, double ms) {
-    return {
-        .scene = scene, .size = {64, 64}, .sampling = sampling, .rmse = rmse, .msPerMegapixel = ms};
+    return {.scene = scene,
+            .size = {64, 64},
+            .sampling = sampling,
+            .rmse = rmse,
+            .msPerMegapixel = ms,
+            .commit = {}};
 }
 
 const std::vector<MeasuredError> kTable = {
@@ -63,8 +67,16 @@ TEST(ErrorTable, WhatFewScenesWereMeasuredWithIsNotTrusted) {
 }
 
 TEST(ErrorTable, SameVolumeUnderAnotherFunctionIsAnotherScene) {
-    const SceneLabel skin{kSkull.volume, "skin", CompositingSpace::Display};
+    SceneLabel skin = kSkull;
+    skin.tf = "skin";
     EXPECT_FALSE(cheapestWithin(0.5, skin, kTable)->ofThisScene);
+}
+
+TEST(ErrorTable, SameNamesOfOtherContentAreAnotherScene) {
+    SceneLabel another = kSkull;
+    another.fingerprint = "d";
+    EXPECT_FALSE(cheapestWithin(0.5, another, kTable)->ofThisScene);
+    EXPECT_TRUE(cheapestWithin(0.5, kSkull, kTable)->ofThisScene);
 }
 
 TEST(ErrorTable, WhatCannotBeReachedNamesTheBest) {
@@ -77,7 +89,7 @@ TEST(ErrorTable, WhatCannotBeReachedNamesTheBest) {
 }
 
 TEST(ErrorTable, OtherSpacesTellNothing) {
-    const SceneLabel linear{kSkull.volume, kSkull.tf, CompositingSpace::Linear};
+    const SceneLabel linear{kSkull.volume, kSkull.tf, kSkull.fingerprint, CompositingSpace::Linear};
     EXPECT_EQ(cheapestWithin(1.0, linear, kTable).error().code, ErrorCode::InvalidArgument);
     EXPECT_EQ(cheapestWithin(1.0, kSkull, {}).error().code, ErrorCode::InvalidArgument);
 }

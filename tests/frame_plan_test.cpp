@@ -390,6 +390,17 @@ TEST(FramePlan, WarnsWhereHalfsLoseMuchOfWhatManyPlanesGather) {
     EXPECT_EQ(reasonFor(slicing(768, TargetFormat::Rgba16f), "warning"), nullptr);
 }
 
+TEST(FramePlan, WarnsWhereAPreintegratedTableLosesTheFaintest) {
+    SceneFacts facts = boneFacts();
+    const auto warned = [&](Classification classification) {
+        return reasonFor(planned({.classification = classification}, facts), "warning") != nullptr;
+    };
+    EXPECT_FALSE(warned(Classification::Preintegrated));
+    facts.wideTable = true;
+    EXPECT_TRUE(warned(Classification::Preintegrated));
+    EXPECT_FALSE(warned(Classification::Post));
+}
+
 TEST(FramePlan, LinearLightIsNotBlendedInEightBits) {
     const FramePlan p = planned({.target = TargetFormat::Rgba8, .space = CompositingSpace::Linear});
     EXPECT_EQ(p.target, TargetFormat::Rgba16f);

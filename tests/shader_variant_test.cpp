@@ -100,7 +100,7 @@ TEST(ShaderVariant, WhatIsOffIsAbsentFromTheText) {
         {"texelFetch(volumeTexels", [](const V& v) { return v.exactField; }},
         {"textureLod(volumeTexels", [](const V& v) { return !v.exactField; }},
         {"gradientRow[0].", [](const V& v) { return v.shaded; }},
-        {"material.z * inLight(pow(", [](const V& v) { return v.shaded; }},
+        {"material.z * pow(", [](const V& v) { return v.shaded; }},
         {"pow(", [](const V& v) { return v.shaded; }},
         {"halved", [](const V& v) { return v.halfGroups != 0; }},
         {"viewport.w", [](const V& v) { return v.terminates; }},

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "perf/stability/bench.h"
 #include "perf/stability/conditions.h"
@@ -83,6 +85,33 @@ TEST_F(StabilityTest, WhatCannotBeDrawnIsAFailedCaseWithItsReason) {
     ASSERT_EQ(bench.cases().size(), 1U);
     EXPECT_FALSE(bench.cases()[0].pass());
     EXPECT_NE(bench.cases()[0].failure.find("both set"), std::string::npos);
+}
+
+TEST_F(StabilityTest, ABoundThatNoPictureCouldExceedIsAFailedCase) {
+    Bench bench = this->bench();
+    const char* const ofFullScale = "largest difference, of full scale";
+    bench.record({.name = "could", .quantity = ofFullScale, .bound = 0.99});
+    bench.record({.name = "could not", .quantity = ofFullScale, .bound = 1.0});
+    bench.record({.name = "has no scale", .quantity = "layers", .bound = 1.0});
+    EXPECT_TRUE(bench.cases()[0].pass());
+    EXPECT_FALSE(bench.cases()[1].pass());
+    EXPECT_TRUE(bench.cases()[2].pass());
+}
+
+/// Names are unique by contract, those of failures included: this would abort otherwise.
+TEST_F(StabilityTest, OnADeviceThatCannotDrawEveryFamilyEndsInFailedCases) {
+    const auto real = std::exchange(gl::CheckFramebufferStatus,
+                                    [](GLenum) { return GLenum{GL_FRAMEBUFFER_UNSUPPORTED}; });
+    Bench bench = this->bench();
+    for (const Family& family : families()) {
+        const std::size_t before = bench.cases().size();
+        family.run(bench);
+        const auto failed =
+            std::count_if(bench.cases().begin() + std::ptrdiff_t(before), bench.cases().end(),
+                          [](const Case& c) { return !c.failure.empty(); });
+        EXPECT_GT(failed, 0) << family.name;
+    }
+    gl::CheckFramebufferStatus = real;
 }
 
 TEST_F(StabilityTest, APixelsOwnBoundTellsPicturesOfDifferentViewsApart) {

@@ -31,6 +31,7 @@ Settings withSampling(const Settings& base, const Sampling& sampling, const Scen
 struct SceneLabel {
     std::string volume;
     std::string tf;
+    std::string fingerprint; // of voxels, their places and the transfer function's points
     CompositingSpace space = CompositingSpace::Display;
 
     bool operator==(const SceneLabel&) const = default;
@@ -43,6 +44,7 @@ struct MeasuredError {
     Sampling sampling;
     double rmse = 0.0;
     double msPerMegapixel = 0.0;
+    std::string commit; // of the build that measured it
 };
 
 struct ErrorChoice {

@@ -170,9 +170,10 @@ struct Planner {
 
     std::string reasonOfClassification() const {
         if (settings.classification == Classification::Preintegrated) {
-            return "opacity is exact for any length of a layer along which the field is linear, "
-                   "colour off by at most " +
-                   number(facts.visibleColorRange * preintegratedColorError(mostDepthOf(1)));
+            return "opacity is exact, but for the table's, along whatever length the field is "
+                   "linear; colour is off by at most " +
+                   number(facts.visibleColorRange * preintegratedColorError(mostDepthOf(1))) +
+                   " (views of up to 120 degrees)";
         }
         if (!settings.shaded) {
             return "no shading: no gradients are fetched";
@@ -323,6 +324,11 @@ Result<FramePlan> plan(const SceneFacts& facts, const Settings& settings, const 
     result.variant.shaded = settings.shaded && settings.classification == Classification::Post;
     planner.because(std::string("classification ") + name(settings.classification),
                     planner.reasonOfClassification());
+    if (facts.wideTable && settings.classification == Classification::Preintegrated) {
+        planner.because("warning",
+                        "extinction spans more decades than a pre-integrated table keeps: "
+                        "the faintest is drawn too dense; post-classification keeps it");
+    }
     if (facts.oneMaterial) {
         planner.because("one material",
                         "the transfer function is constant over the data, so is its table");

@@ -49,6 +49,7 @@ struct SceneFacts {
     bool oneMaterial = false;      // the transfer function is constant over the data
     double maxExtinctionPerMm = 0.0;
     double visibleColorRange = 1.0; // of any channel
+    bool wideTable = false;         // extinction spans more than fp16 keeps
 };
 
 /// One way to deal the layers out to planes.

@@ -29,10 +29,6 @@ struct Lattice {
 /// 2^22 (beyond which float32 no longer counts half layers).
 int layersToCover(double radiusMm, double spacingMm);
 
-/// What every pixel's ray is made from: affine in the pixel's position, in float64. The one source
-/// of the shaders' uniforms and of the float64 references. With p = fragCoord - viewportCentre:
-/// centre(p) = centre0 + centreX p.x + centreY p.y is where the ray crosses the depth of the
-/// sphere's centre, direction(p) likewise its change per unit of depth, both in uvw.
 /// Offset of a ray's lattice in layers, in [-1/2, 1/2): interleaved gradient noise, in integers so
 /// that every device and the references agree to the last bit. Neighbouring pixels differ much, 3x3
 /// blocks hold about every ninth: what banding a coarse lattice would show becomes fine grain.
@@ -40,6 +36,10 @@ int layersToCover(double radiusMm, double spacingMm);
 /// Processing in Call of Duty: Advanced Warfare".
 double jitterOf(glm::ivec2 pixel);
 
+/// What every pixel's ray is made from: affine in the pixel's position, in float64. The one source
+/// of the shaders' uniforms and of the float64 references. With p = fragCoord - viewportCentre:
+/// centre(p) = centre0 + centreX p.x + centreY p.y is where the ray crosses the depth of the
+/// sphere's centre, direction(p) likewise its change per unit of depth, both in uvw.
 struct RayFrame {
     glm::dvec3 centre0, centreX, centreY;
     glm::dvec3 direction0, directionX, directionY;

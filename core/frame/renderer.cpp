@@ -149,6 +149,9 @@ Result<Renderer> Renderer::create(const gl::Caps& caps) {
 
 Result<void> Renderer::prepare(const Scene& scene, const FramePlan& plan) {
     if (plan.drawsNothing) {
+        const gl::StateGuard guard;
+        state_->layer = {};
+        state_->counters = {};
         return state_->textures.update(scene, plan, state_->caps);
     }
     if (!fits(plan, scene.look())) {

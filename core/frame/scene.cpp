@@ -105,6 +105,7 @@ SceneFacts Scene::facts() const {
         facts.maxExtinctionPerMm = std::max(facts.maxExtinctionPerMm,
                                             static_cast<double>(texel.a) * table().extinctionPerMm);
     }
+    facts.wideTable = table_.wide;
     facts.visibleColorRange =
         visibleColorRange(look_.tf, statistics_.min, statistics_.max, look_.space);
     facts.anythingVisible =

@@ -69,7 +69,8 @@ struct ShaderVariant {
         }();
         const bool shadable = classification == Classification::Post;
         const bool hasField = classification != Classification::Pre;
-        const bool measured = halfGroups >= 0 && halfGroups <= kHalfAll;
+        const bool measured =
+            halfGroups == 0 || (halfGroups > 0 && halfGroups <= kHalfAll && unroll == 0 && !counts);
         return listed && measured && (shadable || !shaded) && (hasField || !exactField);
     }
 };

@@ -20,7 +20,9 @@ struct ContinuousInput {
     CompositingSpace space = CompositingSpace::Display;
     View view;
     Viewport viewport;
-    double tolerance = 1e-10; // of a ray's integral, relative to its alpha; 1e-13 at the finest
+    /// Relative to a ray's alpha: what two rules may differ by over any piece, the finer of which is
+    /// taken; 1e-13 at the finest.
+    double tolerance = 1e-10;
 };
 
 /// Called now and then with the share done in [0,1], from any thread, never two at once.

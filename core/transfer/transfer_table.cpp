@@ -82,6 +82,9 @@ glm::vec4 narrowed(const glm::vec4& t) {
 /// of a step belongs to the interval on its left: at its own value the second one holds.
 void keepNarrowPeaks(const TransferFunction& tf, const Span& span,
                      std::vector<TransferSample>& samples) {
+    if (span.size < 3) {
+        return; // end texels only
+    }
     const std::vector<TransferSample> plain = samples; // what the TF is at the texels
     for (const TransferPoint& point : tf.points) {
         const double position = span.positionOf(point.value);

@@ -103,6 +103,9 @@ void Bench::record(Case measured) {
     if (!names_.insert(measured.name).second) {
         contractBreach(__func__, ("no other case is called " + measured.name).c_str(), 0.0);
     }
+    if (measured.failure.empty() && !measured.couldFail()) {
+        measured.failure = "the bound is full scale or more: no picture could exceed it";
+    }
     if (watcher_) {
         watcher_(measured);
     }

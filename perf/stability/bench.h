@@ -59,7 +59,7 @@ public:
     Result<WorkCounters> countWork(const Scene& scene, const FramePlan& plan, const View& view,
                                    glm::ivec2 size);
 
-    /// Contract: no other case has this name.
+    /// Contract: no other case has this name. One that could not fail does: it claims nothing.
     void record(Case measured);
     /// A case that could not be measured: it fails, with the error as the reason.
     void recordFailure(Case unmeasured, const Error& error);

@@ -161,7 +161,7 @@ Verdict judge(const Exhibit& exhibit, const Picture& picture, const ExpectedPict
         const double share = most == 0.0 ? 0.0 : most / bound;
         verdict.share = share <= verdict.share ? verdict.share : share; // NaN stays
         ++verdict.judged;
-        verdict.lit += meant.color.a > 1.0 / 255.0;
+        verdict.lit += meant.color.a > bound; // black would fail
     }
     return verdict;
 }

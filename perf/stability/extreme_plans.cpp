@@ -171,7 +171,8 @@ View planView(const Scene& scene, glm::ivec2 size) {
 void extremePlanCases(Bench& bench) {
     const Result<PlanScenes> scenes = planScenes(bench);
     if (!scenes) {
-        return bench.recordFailure({.family = kFamily, .name = "scenes"}, scenes.error());
+        return bench.recordFailure({.family = kFamily, .name = "scenes of extreme plans"},
+                                   scenes.error());
     }
     for (const ExtremePlan& plan : kPlans) {
         for (const Method& method : methods()) {

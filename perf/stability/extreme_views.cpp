@@ -200,7 +200,7 @@ void extremeViewCases(Bench& bench) {
     const Result<Scene> uniform =
         bench.scene(volume, {.tf = uniformTransfer(1.0 - std::exp(-kSigma), kColor)});
     if (!structured || !uniform) {
-        return bench.recordFailure({.family = kFamily, .name = "scenes"},
+        return bench.recordFailure({.family = kFamily, .name = "scenes of extreme views"},
                                    structured ? uniform.error() : structured.error());
     }
     for (const ViewCase& c : allViews(*structured, bench.reduced())) {

@@ -43,7 +43,7 @@ void opaqueVoxelCase(Bench& bench, const Scene& scene, const Method& method, Lat
     Case result{.family = kFamily,
                 .name = std::string("eye inside an opaque voxel, ") + name(lattice) + ", " +
                         (terminates ? "left early, " : "") + method.name,
-                .quantity = "largest difference from the voxel's colour",
+                .quantity = "largest difference from the voxel's colour, of full scale",
                 .bound = 2.0 * perPlane + 0x1p-12 + (terminates ? 1.0 / 256.0 : 0.0),
                 .reason = "an opacity of 1 - 2^-24 per mm over one mm at least: nothing behind "
                           "shows; half a layer at the eye lets 2^-12 through, so two planes' "

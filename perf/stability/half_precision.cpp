@@ -56,7 +56,9 @@ double opacityBound(const Ray& ray) {
     return 2.0 * (33.0 * kUnit * ray.opacity + ray.layers * 0x1p-25);
 }
 double sumBound(const Ray& ray) {
-    return 2.0 * kUnit * (ray.layersOfSegment + 2.0) * ray.opacity;
+    const double halfStep = std::ldexp(1.0, std::ilogb(ray.opacity) - 11); // of the largest sum
+    const double ofSegment = ray.layersOfSegment * halfStep + 2.0 * kUnit * ray.opacity;
+    return (ray.layersOfSegment < ray.layers ? 2.0 : 1.0) * ofSegment;
 }
 double extinctionBound(const Ray& ray) {
     return 12.0 * kUnit * ray.opacity;
@@ -90,9 +92,8 @@ constexpr Group kGroups[] = {
      "its "
      "series by 4u of itself; and by half of fp16's smallest step: 2 (33u A + layers 2^-25)"},
     {"sum", kHalfSum, false, sumBound,
-     "each of a segment's n layers rounds the sum once and its own share twice: u (n + 2) A, and "
-     "as "
-     "much through what the segment covers"},
+     "each of a segment's n layers rounds the sum by half a step of A at most, and its own share "
+     "twice: n step/2 + 2u A; as much again through what the segment covers, where others follow"},
     {"extinction", kHalfExtinction, false, extinctionBound,
      "texels within a factor of two interpolate to 6u of the extinction, and so of the opacity: "
      "2 x 6u A"},
@@ -176,8 +177,9 @@ void halfPrecisionCases(Bench& bench) {
             }
             const Result<Scene> scene = bench.scene(volume, look, {SkipStructure::None});
             if (!scene) {
-                bench.recordFailure({.family = "half-precision", .name = setup.name},
-                                    scene.error());
+                bench.recordFailure(
+                    {.family = "half-precision", .name = named({group.name, setup.name})},
+                    scene.error());
                 continue;
             }
             for (const Method& method : methods()) {

@@ -178,7 +178,8 @@ void sameRayCases(Bench& bench, const Scene& scene, const TurningScene& setup) {
             settings.layerSpacingVoxels = spacing;
             if (Result<void> done = SameRays(bench, scene, setup, settings).run(); !done) {
                 bench.recordFailure(
-                    {.family = "in-time", .name = named({"same rays", setup.name, name(kind)})},
+                    {.family = "in-time",
+                     .name = named({"same rays", setup.name, name(kind), number(spacing)})},
                     done.error());
             }
         }

@@ -52,12 +52,13 @@ Result<double> frameMs(Bench& bench, const Scene& scene, const FramePlan& plan,
         .count();
 }
 
+/// The least of so many frames of either, drawn in turn.
 struct Times {
-    double frugalMs = 0.0;
-    double allMs = 0.0;
+    int frames;
+    double frugalMs = 1e9;
+    double allMs = 1e9;
 };
 
-/// Least of several frames of either, drawn in turn.
 Result<Times> timed(Bench& bench, const Scene& scene, const FramePlan& plan,
                     const Scene& sceneWithAll, const View& view) {
     const glm::ivec2 size = sizeOf(bench);
@@ -68,16 +69,16 @@ Result<Times> timed(Bench& bench, const Scene& scene, const FramePlan& plan,
     target.begin();
     const ViewTarget where{view, target.framebuffer(), {0, 0, size.x, size.y}};
     const FramePlan all = withAll(plan);
-    Times least{1e9, 1e9};
-    const int frames = bench.reduced() ? 3 : 9;
-    for (int k = 0; k <= frames; ++k) {
+    Times least{.frames = bench.reduced() ? 3 : 9};
+    for (int k = 0; k <= least.frames; ++k) {
         const Result<double> frugal = frameMs(bench, scene, plan, where);
         const Result<double> full = frameMs(bench, sceneWithAll, all, where);
         if (!frugal || !full) {
             return tl::unexpected(frugal ? full.error() : frugal.error());
         }
         if (k > 0) { // the first warms up
-            least = {std::min(least.frugalMs, *frugal), std::min(least.allMs, *full)};
+            least.frugalMs = std::min(least.frugalMs, *frugal);
+            least.allMs = std::min(least.allMs, *full);
         }
     }
     return least;
@@ -113,9 +114,10 @@ void recordResources(Bench& bench, const FrugalScene& setup, const Evidence& evi
                 .samplers = active,
                 .fragments = evidence.work.fragments,
                 .layers = evidence.work.layersEvaluated,
-                .textureBytes = evidence.memory.volumeBytes + evidence.memory.skipBytes,
-                .frameMs = times.frugalMs,
-                .frameMsWithAll = times.allMs};
+                .volumeAndSkipBytes = evidence.memory.volumeBytes + evidence.memory.skipBytes,
+                .timedFrames = times.frames,
+                .leastFrameMs = times.frugalMs,
+                .leastFrameMsWithAll = times.allMs};
     bench.record(std::move(samplers));
 
     Case text = caseOf(setup, "program text", "features that are off and yet in the program's text",
@@ -134,23 +136,16 @@ void recordResources(Bench& bench, const FrugalScene& setup, const Evidence& evi
                                  (skips ? double(evidence.scene.cloud()->freeLengths.size()) : 0.0);
     memory.measured = double(evidence.memory.volumeBytes + evidence.memory.skipBytes);
     bench.record(std::move(memory));
-
-    Case time = caseOf(setup, "time", "frame time as a share of that with everything in",
-                       "what is left out takes no time; half again is what a shared machine's "
-                       "clock may add to the least of several frames drawn in turn");
-    time.bound = 1.5;
-    time.measured = times.frugalMs / times.allMs;
-    bench.record(std::move(time));
 }
 
 /// What the scene needs, drawn, and the same with everything in.
 void recordPictures(Bench& bench, const FrugalScene& setup, const FramePlan& plan,
                     const Drawn& frugal, const Drawn& full) {
-    Case picture =
-        caseOf(setup, "picture", "largest difference from the picture with everything in",
-               "leaving out changes nothing: what is left is one rounding of the target per plane "
-               "and picture, what early termination may lose (1/256, and as much of what is left), "
-               "and float32's rounding of a light that changes nothing");
+    Case picture = caseOf(
+        setup, "picture", "largest difference from the picture with everything in, of full scale",
+        "leaving out changes nothing: what is left is one rounding of the target per plane "
+        "and picture, what early termination may lose (1/256, and as much of what is left), "
+        "and float32's rounding of a light that changes nothing");
     picture.bound = 1.0 / 255.0 + plan.planes * 0x1p-10 + 0x1p-20;
     const std::vector<glm::dvec4> expected(full.picture.pixels.begin(), full.picture.pixels.end());
     picture.measured = largestDifference(frugal.picture, expected);

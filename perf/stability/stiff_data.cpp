@@ -69,7 +69,7 @@ void recordSheet(Bench& bench, const Scene& scene, const Facing& facing, const S
         bench.examine(
             {.family = "stiff",
              .name = named({facing.name, spacing.name, method.name}),
-             .quantity = "largest difference from the integral",
+             .quantity = "largest difference from the integral, of full scale",
              .reason =
                  std::string("a midpoint rule's depth is off by half the total variation of "
                              "extinction x layer length; the sheet's rises and falls once: "
@@ -117,7 +117,7 @@ void recordBoardFaceOn(Bench& bench, const Scene& board) {
         bench.examine(
             {.family = "stiff",
              .name = named({"checkerboard face-on", kSpacings[0].name, method.name}),
-             .quantity = "largest difference from the integral",
+             .quantity = "largest difference from the integral, of full scale",
              .reason = std::string(
                            "samples a voxel apart cancel in pairs: one at either end remains; "
                            "extinction's curve over opacity by half of opacity squared x length; "

@@ -155,7 +155,7 @@ void recordSpikes(Bench& bench, const Spike& spike, const Spacing& spacing) {
     for (const Method& method : methods()) {
         Case c{.family = "stiff",
                .name = named({spike.name, name(spike.classification), spacing.name, method.name}),
-               .quantity = "largest difference from the integral",
+               .quantity = "largest difference from the integral, of full scale",
                .reason =
                    std::string(spike.reason) + "; " + kRoundingReason + ", three planes here"};
         if (!scene) {

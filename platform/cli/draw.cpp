@@ -192,7 +192,11 @@ FrameTimes summarise(std::vector<double> ms) {
                           : ms[static_cast<std::size_t>(
                                 quantile * static_cast<double>(ms.size() - 1) + 0.5)];
     };
-    return {at(0.5), at(0.0), at(1.0), at(0.1), at(0.9), static_cast<int>(ms.size())};
+    // Of an even number the mean of the middle two.
+    const std::size_t middle = ms.size() / 2;
+    const double median =
+        ms.size() % 2 == 1 || ms.empty() ? at(0.5) : 0.5 * (ms[middle - 1] + ms[middle]);
+    return {median, at(0.0), at(1.0), at(0.1), at(0.9), static_cast<int>(ms.size())};
 }
 
 nlohmann::json toJson(const gl::Caps& caps) {

@@ -1,5 +1,6 @@
 #include <chrono>
 #include <optional>
+#include <tuple>
 
 #include <fmt/core.h>
 
@@ -10,6 +11,7 @@
 #include "platform/cli/picture_file.h"
 #include "platform/cli/reference_pictures.h"
 #include "platform/cli/report_files.h"
+#include "platform/cli/scene_key.h"
 #include "platform/cli/scene_options.h"
 #include "platform/io/atomic_file.h"
 
@@ -45,36 +47,8 @@ constexpr CsvColumn kColumns[] = {{"id", "/id"},
                                   {"order_total", "/order/total"},
                                   {"order_sampling", "/order/sampling"},
                                   {"order_table", "/order/table"},
-                                  {"order_gpu", "/order/gpu"},
-                                  {"frame_ms_median", "/frameMs/median"},
-                                  {"frame_ms_min", "/frameMs/min"},
-                                  {"frame_ms_max", "/frameMs/max"},
-                                  {"frame_ms_p10", "/frameMs/p10"},
-                                  {"frame_ms_p90", "/frameMs/p90"},
-                                  {"frame_ms_n", "/frameMs/n"},
-                                  {"fragments", "/counters/fragments"},
-                                  {"layers_evaluated", "/counters/layers_evaluated"},
-                                  {"layers_skipped", "/counters/layers_skipped"},
-                                  {"volume_fetches", "/counters/volume_fetches"},
-                                  {"skip_fetches", "/counters/skip_fetches"},
-                                  {"command", "/command"}};
-
-/// FNV-1a: equal volumes are told from others, no more is needed.
-std::string fingerprint(const std::vector<std::byte>& bytes) {
-    std::uint64_t hash = 14695981039346656037ULL;
-    for (const std::byte byte : bytes) {
-        hash = (hash ^ static_cast<std::uint64_t>(byte)) * 1099511628211ULL;
-    }
-    return fmt::format("{:016x}", hash);
-}
-
-json transferKey(const TransferFunction& tf) {
-    json points = json::array();
-    for (const TransferPoint& p : tf.points) {
-        points.push_back({p.value, p.color.x, p.color.y, p.color.z, p.opacity});
-    }
-    return {{"opacityUnitMm", tf.opacityUnitMm}, {"points", std::move(points)}};
-}
+                                  {"order_gpu", "/order/gpu"}};
+constexpr CsvColumn kLastColumns[] = {{"date", "/date"}, {"command", "/command"}};
 
 json cameraJson(const OrbitCamera& c) {
     return {c.azimuthDegrees, c.elevationDegrees, c.distanceRadii};
@@ -83,18 +57,9 @@ json cameraJson(const OrbitCamera& c) {
 /// All that the continuous picture depends on.
 json referenceKey(const Stage& stage, const ErrorOptions& o) {
     const Scene& scene = stage.scene();
-    json placement = json::array();
-    const glm::dmat4 modelFromUvw = scene.geometry().modelFromUvw();
-    for (int column = 0; column < 4; ++column) {
-        for (int row = 0; row < 3; ++row) {
-            placement.push_back(modelFromUvw[column][row]);
-        }
-    }
-    const glm::ivec3 dims = scene.geometry().dims;
     return {{"commit", commit()},
             {"voxels", fingerprint(stage.values().data)},
-            {"dims", {dims.x, dims.y, dims.z}},
-            {"placement", std::move(placement)},
+            {"placement", placementKey(scene.geometry())},
             {"transfer function", transferKey(scene.look().tf)},
             {"space", name(scene.look().space)},
             {"camera", cameraJson(o.camera)},
@@ -133,7 +98,7 @@ json conditions(const Stage& stage, const ErrorOptions& o) {
             {"texelFormat", name(stage.scene().texels().format)},
             {"quantisationError", stage.scene().texels().maxQuantisationError},
             {"smallestVoxelEdgeMm", stage.scene().facts().smallestVoxelEdgeMm},
-            {"framesPerRow", o.frames},
+            {"framesPerRowAtMost", o.frames},
             {"quick", o.quick}};
 }
 
@@ -171,50 +136,57 @@ json frontByFetches(const json& rows) {
     });
 }
 
+/// Whether all that a row does not name is as `render` has it unless told otherwise.
+bool isUsual(const ErrorOptions& o) {
+    const auto othersOf = [](const SceneOptions& scene) {
+        const Settings& s = scene.settings;
+        return std::tuple(s.skip, s.tighten, s.lattice, s.form, scene.skipBlockEdge,
+                          scene.input.exact);
+    };
+    return othersOf(o) == othersOf(SceneOptions{});
+}
+
 /// Into the table that `render --target-error` reads. The report is there already: what goes wrong
 /// is only said.
 void refreshTable(const Stage& stage, const ErrorOptions& o, const std::vector<Sampling>& grid,
                   const json& rows) {
+    if (!isUsual(o)) {
+        fmt::print(stderr,
+                   "slabcast: the table for --target-error is left as it was: it holds what "
+                   "was measured without --skip, --skip-block, --tighten, --lattice, "
+                   "--form and --exact\n");
+        return;
+    }
     std::vector<MeasuredError> fresh;
     for (const Sampling& sampling : grid) {
         for (const json& row : rows) {
             if (row.at("id") == idOf(sampling)) {
                 const double megapixels = 1e-6 * o.size.x * o.size.y;
                 fresh.push_back({labelOf(stage), o.size, sampling, totalRmse(row),
-                                 row.at("frameMs").at("median").get<double>() / megapixels});
+                                 row.at("frameMs").at("median").get<double>() / megapixels,
+                                 commit()});
             }
         }
     }
-    const Result<fs::path> path = errorTablePath(stage.session().caps);
-    if (!path) {
-        fmt::print(stderr, "slabcast: {}\n", path.error().detail);
-        return;
-    }
-    Result<std::vector<MeasuredError>> table = readErrorTable(*path);
-    if (!table) {
-        fmt::print(stderr, "slabcast: {}: held no table of measured errors: written anew\n",
-                   path->string());
-        table = std::vector<MeasuredError>{};
-    }
-    if (Result<void> written = writeErrorTable(*path, refreshed(std::move(*table), fresh));
-        !written) {
-        fmt::print(stderr, "slabcast: {}\n", written.error().detail);
+    const Result<void> done =
+        errorTablePath(stage.session().caps).and_then([&fresh](const fs::path& path) {
+            return readErrorTable(path).and_then([&](std::vector<MeasuredError> table) {
+                return writeErrorTable(path, refreshed(std::move(table), fresh));
+            });
+        });
+    if (!done) {
+        fmt::print(stderr, "slabcast: {}\n", done.error().detail);
     }
 }
 
 } // namespace
 
 Result<void> errorCommand(const ErrorOptions& given, const std::string& command) {
-    if (given.settings.shaded) {
-        return fail(ErrorCode::InvalidArgument,
-                    "errors are measured without shading, as the exact picture has none: leave "
-                    "--shade phong out");
-    }
+    const std::string started = timestamp();
     ErrorOptions options = given;
     options.background.reset();
     options.input.keepValues = true;
     options.axes = completed(options.axes, options.quick);
-    options.settings.classification = options.axes.classifications.front();
     Result<Stage> stage = Stage::open(options);
     if (!stage) {
         return tl::unexpected(stage.error());
@@ -233,18 +205,21 @@ Result<void> errorCommand(const ErrorOptions& given, const std::string& command)
         return made;
     }
     const std::vector<Sampling> grid = gridOf(options.axes, options.quick);
-    Result<json> rows = ErrorRows(*stage, options, store).measure(grid);
+    ErrorRows measured(*stage, options, store);
+    Result<json> rows = measured.measure(grid);
     if (!rows) {
         return tl::unexpected(rows.error());
     }
     addOrders(*rows);
-    if (Result<void> done = writeFileAtomically(folder / "error.csv", csvOf(*rows, kColumns));
+    const std::vector<CsvColumn> columns = columnsOf({kColumns, kMeasuredColumns, kLastColumns});
+    if (Result<void> done = writeFileAtomically(folder / "error.csv", csvOf(*rows, columns));
         !done) {
         return done;
     }
-    refreshTable(*stage, options, grid, *rows);
     json report = reportHeader(*stage, command);
-    report.update({{"conditions", conditions(*stage, options)},
+    report.update({{"started", started},
+                   {"leftOut", measured.leftOut()},
+                   {"conditions", conditions(*stage, options)},
                    {"axes", toJson(options.axes)},
                    {"reference",
                     {{"seconds", store.reference()->seconds},
@@ -258,7 +233,9 @@ Result<void> errorCommand(const ErrorOptions& given, const std::string& command)
         !done) {
         return done;
     }
-    return writePage(folder, "error_report.py", "error.json and error.csv");
+    const Result<void> page = writePage(folder, "error_report.py", "error.json and error.csv");
+    refreshTable(*stage, options, grid, report["rows"]);
+    return page;
 }
 
 } // namespace slabcast

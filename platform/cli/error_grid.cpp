@@ -74,7 +74,10 @@ GridAxes completed(GridAxes given, bool quick) {
     fill(given.spacings,
          quick ? std::vector{2.0, 1.0, 0.5, 0.25} : std::vector{4.0, 2.0, 1.0, 0.5, 0.25, 0.125});
     std::sort(given.spacings.rbegin(), given.spacings.rend());
-    fill(given.layersPerPlane, {1, 8, 16, 64, 0});
+    fill(given.layersPerPlane, {0, 1, 8, 16, 64});
+    // A length that holds all layers is ray casting too: of equal plans the first is measured.
+    std::stable_partition(given.layersPerPlane.begin(), given.layersPerPlane.end(),
+                          [](int layers) { return layers == 0; });
     fill(given.classifications,
          {Classification::Post, Classification::Pre, Classification::Preintegrated});
     fill(given.targets, {TargetFormat::Rgba8, TargetFormat::Rgba16f});

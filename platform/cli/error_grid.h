@@ -22,7 +22,8 @@ struct GridAxes {
     std::vector<bool> jitter;
 };
 
-/// `given` with defaults where it is empty, fewer of them if `quick`; spacings from coarse to fine.
+/// `given` with defaults where it is empty, fewer of them if `quick`; spacings from coarse to fine,
+/// ray casting before other numbers of layers per plane.
 GridAxes completed(GridAxes given, bool quick);
 
 /// Every combination; by classification, jitter and spacing first, which a sampled picture in

@@ -19,7 +19,6 @@ using nlohmann::json;
 /// Of a row's frames: beyond this no more are timed than make a spread.
 constexpr double kEnoughMs = 2000.0;
 constexpr double kEnoughQuickMs = 300.0;
-constexpr std::size_t kFewestFrames = 2;
 
 const char* ratioName(const FramePlan& plan) {
     return plan.planes == 1 ? "ray casting" : plan.layersPerPlane == 1 ? "slicing" : "hybrid";
@@ -39,8 +38,8 @@ Result<json> ErrorRows::measure(const std::vector<Sampling>& grid) {
     std::vector<FramePlan> plans;
     for (std::size_t i = 0; i < grid.size(); ++i) {
         const Sampling& sampling = grid[i];
-        if (Result<void> look = stage_.reclassify(sampling.classification); !look) {
-            return tl::unexpected(look.error());
+        if (!classify(sampling.classification)) {
+            continue;
         }
         const SceneFacts facts = stage_.scene().facts();
         const Result<FramePlan> plan = slabcast::plan(
@@ -65,7 +64,25 @@ Result<json> ErrorRows::measure(const std::vector<Sampling>& grid) {
         }
         rows.push_back(*store_.row(id));
     }
+    if (rows.empty()) {
+        return fail(ErrorCode::InvalidArgument, leftOut_.at(0).at("why"));
+    }
     return rows;
+}
+
+bool ErrorRows::classify(Classification classification) {
+    const auto isThis = [=](const json& entry) {
+        return entry.at("classification") == name(classification);
+    };
+    if (std::any_of(leftOut_.begin(), leftOut_.end(), isThis)) {
+        return false;
+    }
+    const Result<void> look = stage_.reclassify(classification);
+    if (!look) {
+        leftOut_.push_back(
+            {{"classification", name(classification)}, {"why", look.error().detail}});
+    }
+    return look.has_value();
 }
 
 Result<json> ErrorRows::measureRow(const Sampling& sampling, const FramePlan& plan) {
@@ -92,6 +109,7 @@ Result<json> ErrorRows::measureRow(const Sampling& sampling, const FramePlan& pl
     }
     json row = toJson(sampling);
     row.update({{"id", id},
+                {"date", timestamp()},
                 {"ratio", ratioName(plan)},
                 {"plan", planJson(plan)},
                 {"error", std::move(error)},
@@ -121,8 +139,8 @@ Result<FrameTimes> ErrorRows::time(const FramePlan& plan) {
     const double enoughMs = options_.quick ? kEnoughQuickMs : kEnoughMs;
     const auto frames = static_cast<std::size_t>(options_.frames);
     std::vector<double> times;
-    for (double spentMs = 0.0;
-         times.size() < kFewestFrames || (times.size() < frames && spentMs < enoughMs);) {
+    for (double spentMs = 0.0; times.size() < std::size_t{kFewestFrames} ||
+                               (times.size() < frames && spentMs < enoughMs);) {
         const Result<double> ms = stage_.drawTimed(plan, 0.0);
         if (!ms) {
             return tl::unexpected(ms.error());

@@ -19,8 +19,12 @@ public:
     ErrorRows(Stage& stage, const ErrorOptions& options, ErrorStore& store)
         : stage_(stage), options_(options), store_(store), reference_(store.reference()->pixels) {}
 
-    /// Every row of the grid with a plan of its own, in order.
+    /// Every row of the grid with a plan of its own, in order; those of a classification that
+    /// cannot be had are left out. Fails: InvalidArgument (none can be had), as what is measured.
     Result<nlohmann::json> measure(const std::vector<Sampling>& grid);
+
+    /// Classifications, each with why.
+    const nlohmann::json& leftOut() const { return leftOut_; }
 
 private:
     /// Sampled in float64, once for all rows that take the same samples.
@@ -31,6 +35,8 @@ private:
         nlohmann::json sampling, table; // the parts of the error
     };
 
+    /// False where it cannot be had: it is left out from then on.
+    bool classify(Classification classification);
     Result<nlohmann::json> measureRow(const Sampling& sampling, const FramePlan& plan);
     const Sampled& sampledFor(const FramePlan& plan);
     Result<FrameTimes> time(const FramePlan& plan);
@@ -44,6 +50,7 @@ private:
     const std::vector<glm::dvec4>& reference_;
     Progress progress_;
     std::optional<Sampled> sampled_;
+    nlohmann::json leftOut_ = nlohmann::json::array();
     std::vector<std::pair<FramePlan, nlohmann::json>>
         counted_; // work does not depend on the target
 };

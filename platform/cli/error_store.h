@@ -21,10 +21,12 @@ struct StoredReference {
 
 /// What a run of `slabcast error` has finished, kept in its folder so that a run cut short can go
 /// on: `rows.jsonl` (a key, then a row per line) and `reference.f64` (a key, then raw doubles).
-/// Keys are JSON objects of all that the content depends on; of other keys nothing is taken.
+/// Keys are JSON objects of all that the content depends on, `commit` and the reference's `size`
+/// among it; of other keys nothing is taken, and nothing where the commit is of changed sources.
 class ErrorStore {
 public:
-    /// Never fails: what cannot be read is not there. `notes` receives lines for people.
+    /// Never fails: what cannot be read is not there, and rows that are damaged start anew. `notes`
+    /// receives lines for people.
     static ErrorStore open(const std::filesystem::path& folder, nlohmann::json referenceKey,
                            nlohmann::json rowsKey, std::vector<std::string>& notes);
 
@@ -41,6 +43,7 @@ private:
         : folder_(std::move(folder)), referenceKey_(std::move(referenceKey)),
           rowsKey_(std::move(rowsKey)) {}
 
+    std::string damaged() const; // in words
     void readReference();
     void readRows(std::vector<std::string>& notes);
 

@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "platform/cli/scene_key.h"
 #include "platform/cli/scene_options.h"
 #include "platform/io/atomic_file.h"
 
@@ -19,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 const Choices<CompositingSpace>& spaceWords() {
     static const Choices<CompositingSpace> words = {
@@ -32,10 +33,12 @@ json rowOf(const MeasuredError& m) {
     json row = toJson(m.sampling);
     row.update({{"volume", m.scene.volume},
                 {"tf", m.scene.tf},
+                {"fingerprint", m.scene.fingerprint},
                 {"space", name(m.scene.space)},
                 {"size", {m.size.x, m.size.y}},
                 {"rmse", m.rmse},
-                {"msPerMegapixel", m.msPerMegapixel}});
+                {"msPerMegapixel", m.msPerMegapixel},
+                {"commit", m.commit}});
     return row;
 }
 
@@ -65,11 +68,13 @@ MeasuredError measuredIn(const json& row) {
         .termination = termination == "off" ? std::nullopt
                                             : std::optional(numberIn(row, "termination", 0.0, 1.0)),
         .jitter = row.at("jitter").get<bool>()};
-    return {.scene = {row.at("volume"), row.at("tf"), wordIn(row, "space", spaceWords())},
+    return {.scene = {row.at("volume"), row.at("tf"), row.at("fingerprint"),
+                      wordIn(row, "space", spaceWords())},
             .size = {row.at("size").at(0).get<int>(), row.at("size").at(1).get<int>()},
             .sampling = sampling,
             .rmse = numberIn(row, "rmse", 0.0, kMost),
-            .msPerMegapixel = numberIn(row, "msPerMegapixel", 0.0, kMost)};
+            .msPerMegapixel = numberIn(row, "msPerMegapixel", 0.0, kMost),
+            .commit = row.at("commit")};
 }
 
 } // namespace
@@ -99,11 +104,15 @@ Result<fs::path> errorTablePath(const gl::Caps& caps) {
 }
 
 Result<std::vector<MeasuredError>> readErrorTable(const fs::path& path) {
-    std::ifstream file(path);
-    if (!file) {
+    std::error_code ignored; // what cannot be asked after cannot be read either: said below
+    if (fs::status(path, ignored).type() == fs::file_type::not_found) {
         return std::vector<MeasuredError>{};
     }
     try {
+        std::ifstream file(path);
+        if (!file) {
+            throw std::runtime_error("it cannot be read");
+        }
         const json content = json::parse(file);
         if (content.at("version") != kVersion) {
             throw std::runtime_error("of another version");
@@ -138,7 +147,8 @@ std::vector<MeasuredError> refreshed(std::vector<MeasuredError> table,
                                      const std::vector<MeasuredError>& fresh) {
     std::erase_if(table, [&fresh](const MeasuredError& old) {
         return std::any_of(fresh.begin(), fresh.end(), [&old](const MeasuredError& now) {
-            return now.scene == old.scene && now.size == old.size && now.sampling == old.sampling;
+            return now.commit != old.commit ||
+                   (now.scene == old.scene && now.size == old.size && now.sampling == old.sampling);
         });
     });
     table.insert(table.end(), fresh.begin(), fresh.end());
@@ -146,9 +156,14 @@ std::vector<MeasuredError> refreshed(std::vector<MeasuredError> table,
 }
 
 SceneLabel labelOf(const Stage& stage) {
+    const Scene& scene = stage.scene();
     const glm::ivec3 dims = stage.info().dims;
+    const std::string content = json{statisticsKey(scene.statistics()),
+                                     placementKey(scene.geometry()), transferKey(scene.look().tf)}
+                                    .dump();
     return {fmt::format("{} {}x{}x{}", stage.info().name, dims.x, dims.y, dims.z),
-            stage.scene().look().tf.name, stage.scene().look().space};
+            scene.look().tf.name, fingerprint(std::as_bytes(std::span(content))),
+            scene.look().space};
 }
 
 } // namespace slabcast

@@ -1,4 +1,5 @@
 #include <cstdlib>
+#include <exception>
 #include <functional>
 #include <new>
 #include <utility>
@@ -6,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "platform/cli/command_line.h"
 #include "platform/cli/commands.h"
 #include "platform/cli/help_formatter.h"
 
@@ -26,7 +28,7 @@ int finished(const Result<void>& result) {
 std::string commandLine(int argc, char** argv) {
     std::string line = "slabcast";
     for (int k = 1; k < argc; ++k) {
-        line += std::string(" ") + argv[k];
+        line += " " + shellWord(argv[k]);
     }
     return line;
 }
@@ -71,8 +73,8 @@ int run(int argc, char** argv) {
 
     try {
         app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? kDone : kBadUsage;
+    } catch (const CLI::ParseError& misuse) {
+        return app.exit(misuse) == 0 ? kDone : kBadUsage;
     }
     for (const auto& [command, action] : commands) {
         if (command->parsed()) {
@@ -93,4 +95,9 @@ int main(int argc, char** argv) try {
     return finished(
         fail(ErrorCode::Internal,
              "out of memory: take a smaller --size, or a smaller volume with --downsample"));
+} catch (const std::exception& defect) {
+    const std::string what = defect.what();
+    return finished(fail(ErrorCode::Internal, "a defect of this program (" +
+                                                  what.substr(0, what.find('\n')) +
+                                                  "): report it with the command that led here"));
 }

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "perf/stability/bench.h"
 #include "platform/cli/scene_options.h"
 
 namespace slabcast {
@@ -15,45 +16,67 @@ void bindScene(CLI::App& command, SceneOptions& o) {
     bindCamera(command, o);
     bindEyes(command, o);
     bindLook(command, o);
+    bindShading(command, o.settings);
     bindSampling(command, o.settings);
     bindStack(command, o);
 }
 
 constexpr glm::ivec2 kQuickSize(160); // of `error`
 
+/// The families of `stability`, each by its name.
+Choices<std::string> familyWords() {
+    Choices<std::string> words{{"all", ""}};
+    for (const stability::Family& family : stability::families()) {
+        words.emplace_back(family.name, family.name);
+    }
+    return words;
+}
+
 /// The sampling's options, several values each.
 void bindGrid(CLI::App& command, GridAxes& axes) {
     const auto group = "What is varied";
+    const GridAxes usual = completed({}, false);
     addList<double>(command, "--layer-spacing", axes.spacings,
                     numberParser<double>(kLeastSpacing, kMostSpacing),
                     fmt::format("numbers from {} to {}", kLeastSpacing, kMostSpacing),
                     "distances of layers in units of the smallest voxel edge")
         ->type_name("VOXELS,...")
-        ->default_str("4,2,1,0.5,0.25,0.125")
+        ->default_str(fmt::format("{}", fmt::join(usual.spacings, ",")))
         ->group(group);
     addList<int>(command, "--layers-per-plane", axes.layersPerPlane,
                  numberParser<int>(0, kMaxLayers),
                  fmt::format("whole numbers from 0 to {}", kMaxLayers),
                  "1 is slicing, 0 is all in one plane: ray casting")
         ->type_name("N,...")
-        ->default_str("1,8,16,64,0")
+        ->default_str(fmt::format("{}", fmt::join(usual.layersPerPlane, ",")))
         ->group(group);
-    const auto addWords = [&](const char* flag, auto& values, const auto& choices,
-                              const char* help) {
+    const auto addWords = [&](const char* flag, auto& values, const auto& usually,
+                              const auto& choices, const char* help) {
+        std::vector<std::string> words;
+        for (const auto value : usually) {
+            words.push_back(wordFor(choices, value));
+        }
         addList(command, flag, values, choiceParser(choices),
                 "one or several of " + wordsOf(choices, ", "), help)
             ->type_name("WORD,...")
-            ->default_str(wordsOf(choices, ","))
+            ->default_str(fmt::format("{}", fmt::join(words, ",")))
             ->group(group);
     };
-    addWords("--classify", axes.classifications, classificationWords(), "kinds of classification");
-    addWords("--target", axes.targets, targetWords(), "what planes are blended into");
-    addWords("--jitter", axes.jitter, onOffWords(), "layers moved by up to half a layer");
+    addWords("--classify", axes.classifications, usual.classifications, classificationWords(),
+             "kinds of classification");
+    addWords("--target", axes.targets, usual.targets, targetWords(),
+             "what planes are blended into");
+    addWords("--jitter", axes.jitter, usual.jitter, onOffWords(),
+             "layers moved by up to half a layer");
+    std::vector<std::string> opacities;
+    for (const std::optional<double>& opacity : usual.terminations) {
+        opacities.push_back(opacity ? fmt::format("{:.4f}", *opacity) : "off");
+    }
     addList<std::optional<double>>(command, "--termination", axes.terminations, parseTermination,
                                    "opacities above 0 and up to 1, or off,",
                                    "opacities at which a segment is left, or off")
         ->type_name("A|off,...")
-        ->default_str(fmt::format("{:.4f},off", Settings{}.termination.value_or(1.0)))
+        ->default_str(fmt::format("{}", fmt::join(opacities, ",")))
         ->group(group);
 }
 
@@ -76,6 +99,13 @@ void bindTargetError(CLI::App& command, RenderOptions& o) {
                   "integrate the exact picture too, which takes a while, and print how far off "
                   "this one is; --stats gets it as well")
         ->group(group);
+    command.final_callback([&o] {
+        if (o.settings.shaded && (o.verify || o.targetError)) {
+            throw CLI::ValidationError(o.verify ? "--verify" : "--target-error",
+                                       "knows pictures without shading only: leave it or --shade "
+                                       "phong out");
+        }
+    });
 }
 
 } // namespace
@@ -151,9 +181,7 @@ void bindStability(CLI::App& command, StabilityOptions& o) {
         ->required()
         ->type_name("FOLDER")
         ->group(group);
-    command.add_option("--family", o.family, "only the cases of this family")
-        ->type_name("NAME")
-        ->default_str("all")
+    addChoice(command, "--family", o.family, familyWords(), "only the cases of this family")
         ->group(group);
     command.add_flag("--reduced", o.reduced, "fewer sizes, views and repetitions; the same bounds")
         ->group(group);
@@ -179,7 +207,8 @@ void bindError(CLI::App& command, ErrorOptions& o) {
             o.size = kQuickSize;
         }
     });
-    addNumber(command, "--frames", o.frames, 2, 10000, "timed frames per row, fewer of slow ones")
+    addNumber(command, "--frames", o.frames, kFewestFrames, 10000,
+              "timed frames per row, fewer of slow ones")
         ->type_name("N")
         ->default_str(fmt::format("{}", o.frames))
         ->group(group);

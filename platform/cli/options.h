@@ -47,12 +47,13 @@ struct StabilityOptions {
     bool reduced = false;
 };
 
+inline constexpr int kFewestFrames = 3; // of a row: one slow frame is not the median
+
 struct ErrorOptions : SceneOptions {
     std::string outputFolder;
     bool quick = false;
-    std::optional<glm::ivec2> givenSize;
     GridAxes axes;
-    int frames = 5;
+    int frames = 5; // of a row, at most
 };
 
 // Each binds the options of one command, with its help; values that do not parse throw

@@ -136,24 +136,11 @@ Result<bool> checkOutputs(const RenderOptions& options) {
     return pictureIsEncoded(options.output);
 }
 
-Result<void> checkAccuracyOptions(const RenderOptions& options) {
-    if (options.settings.shaded && (options.verify || options.targetError)) {
-        return fail(ErrorCode::InvalidArgument,
-                    fmt::format("{} knows pictures without shading only: leave it or --shade "
-                                "phong out",
-                                options.verify ? "--verify" : "--target-error"));
-    }
-    return {};
-}
-
 } // namespace
 
 Result<void> renderCommand(const RenderOptions& given) {
     RenderOptions options = given;
     options.input.keepValues = options.verify;
-    if (Result<void> sound = checkAccuracyOptions(options); !sound) {
-        return sound;
-    }
     const Result<bool> encoded = checkOutputs(options);
     if (!encoded) {
         return tl::unexpected(encoded.error());
@@ -180,11 +167,6 @@ Result<void> renderCommand(const RenderOptions& given) {
     if (!turn) {
         return tl::unexpected(turn.error());
     }
-    if (Result<void> saved = savePicture(options.output, options.size, turn->firstPicture,
-                                         options.background.has_value());
-        !saved) {
-        return saved;
-    }
     std::optional<PictureDifference> error;
     if (options.verify) {
         const Result<PictureDifference> found = verify(*stage, *plan, options.size);
@@ -192,6 +174,13 @@ Result<void> renderCommand(const RenderOptions& given) {
             return tl::unexpected(found.error());
         }
         error = *found;
+    }
+    if (Result<void> saved = savePicture(options.output, options.size, turn->firstPicture,
+                                         options.background.has_value());
+        !saved) {
+        return saved;
+    }
+    if (error) {
         print(*error);
     }
     if (options.statsFile.empty()) {

@@ -81,6 +81,14 @@ json reportHeader(const Stage& stage, const std::string& command) {
             {"volume", toJson(stage.info())}};
 }
 
+std::vector<CsvColumn> columnsOf(std::initializer_list<std::span<const CsvColumn>> parts) {
+    std::vector<CsvColumn> columns;
+    for (const std::span<const CsvColumn> part : parts) {
+        columns.insert(columns.end(), part.begin(), part.end());
+    }
+    return columns;
+}
+
 std::string csvOf(const json& rows, std::span<const CsvColumn> columns) {
     std::string text;
     const auto addLine = [&](auto&& cellOf) {

@@ -181,7 +181,6 @@ void bindEyes(CLI::App& command, SceneOptions& o) {
 }
 
 void bindLook(CLI::App& command, SceneOptions& o) {
-    Settings& s = o.settings;
     const auto group = "Look";
     command
         .add_option("--tf", o.tf,
@@ -190,13 +189,16 @@ void bindLook(CLI::App& command, SceneOptions& o) {
         ->type_name("NAME|FILE")
         ->default_str("by modality and range")
         ->group(group);
-    addChoice(command, "--shade", s.shaded, {{"off", false}, {"phong", true}},
-              "Blinn-Phong with a head light")
-        ->group(group);
-    addChoice(command, "--space", s.space,
+    addChoice(command, "--space", o.settings.space,
               {{"display", CompositingSpace::Display}, {"linear", CompositingSpace::Linear}},
               "blend encoded values as most viewers do, or light")
         ->group(group);
+}
+
+void bindShading(CLI::App& command, Settings& s) {
+    addChoice(command, "--shade", s.shaded, {{"off", false}, {"phong", true}},
+              "Blinn-Phong with a head light")
+        ->group("Look");
 }
 
 void bindStack(CLI::App& command, SceneOptions& o) {

@@ -25,6 +25,7 @@ void bindTexture(CLI::App& command, InputOptions& options); // how the volume li
 void bindCamera(CLI::App& command, SceneOptions& options);  // and the picture's size
 void bindEyes(CLI::App& command, SceneOptions& options);    // and the background
 void bindLook(CLI::App& command, SceneOptions& options);
+void bindShading(CLI::App& command, Settings& settings);
 void bindStack(CLI::App& command, SceneOptions& options);
 /// What a picture's accuracy depends on most, one value each.
 void bindSampling(CLI::App& command, Settings& settings);

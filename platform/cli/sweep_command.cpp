@@ -108,6 +108,7 @@ Result<json> measureRow(Stage& stage, const SweepOptions& options, const Setting
                 {"classification", name(plan->variant.classification)},
                 {"termination", terminates ? fmt::format("{:.4f}", plan->terminationAlpha) : "off"},
                 {"lattice", name(plan->lattice.kind)},
+                {"jitter", plan->lattice.jittered},
                 {"planes", plan->planes},
                 {"layersPerPlane", plan->layersPerPlane},
                 {"form", plan->variant.unroll > 0 ? "unrolled" : "loop"},
@@ -170,19 +171,9 @@ constexpr CsvColumn kColumns[] = {{"planes", "/planes"},
                                   {"classification", "/classification"},
                                   {"termination", "/termination"},
                                   {"lattice", "/lattice"},
+                                  {"jitter", "/jitter"},
                                   {"variant", "/variant"},
-                                  {"compileMs", "/compileMs"},
-                                  {"frame_ms_median", "/frameMs/median"},
-                                  {"frame_ms_min", "/frameMs/min"},
-                                  {"frame_ms_max", "/frameMs/max"},
-                                  {"frame_ms_p10", "/frameMs/p10"},
-                                  {"frame_ms_p90", "/frameMs/p90"},
-                                  {"frame_ms_n", "/frameMs/n"},
-                                  {"fragments", "/counters/fragments"},
-                                  {"layers_evaluated", "/counters/layers_evaluated"},
-                                  {"layers_skipped", "/counters/layers_skipped"},
-                                  {"volume_fetches", "/counters/volume_fetches"},
-                                  {"skip_fetches", "/counters/skip_fetches"}};
+                                  {"compileMs", "/compileMs"}};
 
 } // namespace
 
@@ -215,8 +206,8 @@ Result<void> sweepCommand(const SweepOptions& options, const std::string& comman
     }
     json report = header(*stage, options, command);
     report["rows"] = std::move(rows);
-    if (Result<void> done =
-            writeFileAtomically(folder / "sweep.csv", csvOf(report["rows"], kColumns));
+    if (Result<void> done = writeFileAtomically(
+            folder / "sweep.csv", csvOf(report["rows"], columnsOf({kColumns, kMeasuredColumns})));
         !done) {
         return done;
     }
