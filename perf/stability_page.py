@@ -14,8 +14,8 @@ HEAD = ["case", "bound", "measured", "share of bound, log"]
 TIGHTEST = 10
 FEW_PICTURES = 12
 LONG = 16  # cases of one table
-SOFTWARE_ROUNDS = ("its filter and its rounding are more exact than most GPUs'. The bounds allow for a GPU's: whether it "
-                   "keeps them, a run on it tells.")
+SOFTWARE_ROUNDS = ("its filter and its rounding are its own. The bounds allow for a GPU's: whether it keeps them, a run on "
+                   "it tells.")
 HALF_STEP = 1 / 510  # of 8 bits: what no display shows
 
 

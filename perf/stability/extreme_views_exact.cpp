@@ -89,12 +89,12 @@ PixelReference composite(const TransferFunction& tf, const std::vector<glm::dvec
         extinctions += extinction * layer.y;
         pixel.color += (1.0 - pixel.color.a) * alpha * glm::dvec4(sample.color, 1.0);
     }
-    // fp16 in the table: extinction by 2^-12 of itself, colour by as much. Positions: 2^-22 of
+    // fp16 in the table: extinction by 2^-11 of itself, colour by as much. Positions: 2^-22 of
     // terms below 4 over 16 voxels, that is 2^-16 of a voxel, across which values differ by up to
     // 180.
     const double valueError = 180.0 * 0x1p-16;
     const double slope = 0.28 / 180.0 / 0.7; // of the extinction by value
-    pixel.bound = extinctions * (0x1p-12 + valueError * 0.9 / 180.0) + 0x1p-12 +
+    pixel.bound = extinctions * (0x1p-11 + valueError * 0.9 / 180.0) + 0x1p-11 +
                   16.0 * slope * valueError + double(values.size()) * 0x1p-21;
     return pixel;
 }
@@ -142,7 +142,7 @@ void planesOnFacesCase(Bench& bench, const Axis& axis, bool samplesOnFaces) {
     const PixelReference pixel = composite(sheets(), layersThrough(kSheets, samplesOnFaces));
     recordAgainst(bench, exhibit,
                   "a sum over the sheets, front to back; a pixel's bound adds the table's fp16 "
-                  "(2^-12), positions off by 2^-16 of a voxel, 2^-21 per layer, and the target's "
+                  "(2^-11), positions off by 2^-16 of a voxel, 2^-21 per layer, and the target's "
                   "rounding at every plane",
                   ExpectedPicture(static_cast<std::size_t>(size.x) * size.y, pixel));
 }

@@ -56,7 +56,7 @@ double sheetBound(const Facing& facing, double layerVoxels, const FramePlan& pla
     const double filter = most * facing.voxelsAlong * (3.0 / 256.0 + 1.0 / 255.0);
     const double planesMet = std::min<double>(
         plan.planes, facing.voxelsAlong / (layerVoxels * plan.layersPerPlane) + 2.0);
-    return -std::expm1(-most * voxels) + ofCurvedTransfer + filter + 0x1p-12 / std::exp(1.0) +
+    return -std::expm1(-most * voxels) + ofCurvedTransfer + filter + 0x1p-11 / std::exp(1.0) +
            planesMet * roundingPerPlane(plan.target);
 }
 
@@ -75,7 +75,7 @@ void recordSheet(Bench& bench, const Scene& scene, const Facing& facing, const S
                              "extinction x layer length; the sheet's rises and falls once: "
                              "the opacity of one layer at its densest; the filter's part over "
                              "the way through the sheet (3/256 of its range and a step of "
-                             "R8), the table's 2^-12 / e; ") +
+                             "R8), the table's 2^-11 / e; ") +
                  kRoundingReason},
             scene, settings, view, kSize, [&](Case& c, const Drawn& drawn) {
                 c.bound = sheetBound(facing, spacing.voxels, drawn.plan);
@@ -105,7 +105,7 @@ double boardBound(const FramePlan& plan) {
     const double curved = kBoardDims * kBoardOpacity * kBoardOpacity / 2.0;
     const double filter = kBoardDims * most * (3.0 / 256.0 + 1.0 / 255.0);
     const double planesMet = std::ceil(kBoardDims * 1.0 / plan.layersPerPlane) + 1.0;
-    return unpaired + curved + filter + 0x1p-12 / std::exp(1.0) +
+    return unpaired + curved + filter + 0x1p-11 / std::exp(1.0) +
            planesMet * roundingPerPlane(plan.target);
 }
 
@@ -122,7 +122,7 @@ void recordBoardFaceOn(Bench& bench, const Scene& board) {
                            "samples a voxel apart cancel in pairs: one at either end remains; "
                            "extinction's curve over opacity by half of opacity squared x length; "
                            "the filter's part over the box (3/256 of its range and a step of R8), "
-                           "the table's 2^-12 / e; ") +
+                           "the table's 2^-11 / e; ") +
                        kRoundingReason},
             board, settingsOf(method), view, kSize, [&](Case& c, const Drawn& drawn) {
                 c.bound = boardBound(drawn.plan);
