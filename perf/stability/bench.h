@@ -74,6 +74,7 @@ public:
 
     const std::vector<Case>& cases() const { return cases_; }
     const gl::Caps& caps() const { return caps_; }
+    const std::vector<TexelFormatTest>& formats() const { return formats_; }
     Renderer& renderer() { return renderer_; }
 
 private:

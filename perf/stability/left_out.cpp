@@ -153,6 +153,19 @@ void recordPictures(Bench& bench, const FrugalScene& setup, const FramePlan& pla
     bench.record(std::move(picture));
 }
 
+/// Of the programs that a renderer built which drew nothing else.
+Result<gl::ActiveResources> resourcesOf(Bench& bench, const Scene& scene, const FramePlan& plan,
+                                        const View& view, glm::ivec2 size) {
+    Result<Renderer> fresh = Renderer::create(bench.caps());
+    if (!fresh) {
+        return tl::unexpected(fresh.error());
+    }
+    Bench alone(*fresh, bench.caps(), bench.formats(), bench.reduced());
+    const Result<Drawn> drawn = alone.draw(scene, plan, view, size);
+    return drawn ? Result<gl::ActiveResources>(fresh->resources(plan.variant))
+                 : tl::unexpected(drawn.error());
+}
+
 Result<void> judge(Bench& bench, const FrugalScene& setup) {
     const Volume volume = setup.volume();
     const Look look{.tf = setup.tf,
@@ -174,16 +187,16 @@ Result<void> judge(Bench& bench, const FrugalScene& setup) {
     const Result<Drawn> full = bench.draw(*sceneWithAll, withAll(*plan), view, size);
     const Result<Drawn> frugal = bench.draw(*scene, *plan, view, size); // the last: its textures
     const Result<WorkCounters> work = bench.countWork(*scene, *plan, view, size);
-    if (!times || !full || !frugal || !work) {
+    const Result<gl::ActiveResources> resources = resourcesOf(bench, *scene, *plan, view, size);
+    if (!times || !full || !frugal || !work || !resources) {
         return tl::unexpected(!times    ? times.error()
                               : !full   ? full.error()
                               : !frugal ? frugal.error()
-                                        : work.error());
+                              : !work   ? work.error()
+                                        : resources.error());
     }
-    const gl::ActiveResources resources =
-        plan->drawsNothing ? gl::ActiveResources{} : bench.renderer().resources(plan->variant);
     const Evidence evidence{
-        *scene, *plan, view, size, resources, *work, bench.renderer().gpuMemory()};
+        *scene, *plan, view, size, *resources, *work, bench.renderer().gpuMemory()};
     recordResources(bench, setup, evidence, *times);
     recordPictures(bench, setup, *plan, *frugal, *full);
     Case claim = caseOf(setup, "work", setup.claim.quantity, setup.claim.reason);
