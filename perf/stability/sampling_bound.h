@@ -33,7 +33,9 @@ LayerPlace placeOf(const EyeRay& ray, const Lattice& lattice, int layer, double 
 /// How far samples may put a pixel from the integral, from the field along its ray alone. With all
 /// colours in [0, 1], a layer whose opacity is off by a and whose colour by c moves the pixel by at
 /// most T (a + alpha c), T being what the layers before it let through: layers are replaced one
-/// after the other, and the rest of the pixel is the same before and after.
+/// after the other, and the rest of the pixel is the same before and after. One part is an
+/// estimate: the field's extremes along a stretch are those of a few places on it, widened by half
+/// of the largest step between neighbours, which a cubic within a cell may in principle exceed.
 class SamplingBound {
 public:
     /// How samples are classified: by the continuous TF, or by the table as a device holds it.
