@@ -20,8 +20,8 @@ struct ContinuousInput {
     CompositingSpace space = CompositingSpace::Display;
     View view;
     Viewport viewport;
-    /// Relative to a ray's alpha: what two rules may differ by over any piece, the finer of which is
-    /// taken; 1e-13 at the finest.
+    /// Relative to a ray's alpha: what two rules may differ by over any piece, the finer of which
+    /// is taken; 1e-13 at the finest.
     double tolerance = 1e-10;
 };
 

@@ -76,12 +76,12 @@ double extinctionUnitPerMm(const TransferFunction& tf);
 /// Spans the part of [dataMin, dataMax] in which the TF varies, one texel per integer value where
 /// that fits `maxSize` and the data are integers (then every knot at an integer is exact), else
 /// `maxSize` texels; two equal ones where the TF is constant over the data.
-/// Values are rounded to fp16, as the texture holds them, so extinction is off by 2^-11 of itself at
-/// most; where points span more than the eight decades that fp16 keeps so well, texels stay
+/// Values are rounded to fp16, as the texture holds them, so extinction is off by 2^-11 of itself
+/// at most; where points span more than the eight decades that fp16 keeps so well, texels stay
 /// float32 (`wide`). Visible texels are never zero. A texel is exactly zero in alpha where the TF
-/// is, with one exception: of a peak between two texels, higher than both, the nearer texel takes the whole, so
-/// that nothing visible is lost for being narrow. A step becomes a ramp from one texel to the next;
-/// a gap narrower than a texel is filled. Tested by: transfer_table_test.cpp
+/// is, with one exception: of a peak between two texels, higher than both, the nearer texel takes
+/// the whole, so that nothing visible is lost for being narrow. A step becomes a ramp from one
+/// texel to the next; a gap narrower than a texel is filled. Tested by: transfer_table_test.cpp
 TransferTable makeTable(const TransferFunction& tf, double dataMin, double dataMax,
                         bool integerData, CompositingSpace space, int maxSize = 4096);
 
