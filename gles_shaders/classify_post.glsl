@@ -7,8 +7,8 @@ uniform sampler2D transferTable;
 
 /// Two fetches, interpolated here: texture units may filter with 8-bit weights, and what is zero in
 /// both texels must be exactly zero between them. Colours are mediump: their rounding stays below
-/// half an 8-bit step (`slabcast stability`, half precision); a device that does round them promises
-/// that skipping changes nothing only to that rounding.
+/// half an 8-bit step (`slabcast stability`, half precision); a device that does round them
+/// promises that skipping changes nothing only to that rounding.
 vec4 materialOf(float value) {
     precise float at = clamp((value - tableMap.y) * tableMap.x, 0.0, tableMap.w);
     int texel = int(at);

@@ -21,8 +21,8 @@ vec2 slabOffsets(float centre, float inverseSlope) {
     return vec2(min(a, b), max(a, b));
 }
 
-/// Mirrors jitterOf() in core/frame/lattice.cpp: interleaved gradient noise in integers, from -1/2 to
-/// 1/2.
+/// Mirrors jitterOf() in core/frame/lattice.cpp: interleaved gradient noise in integers, from -1/2
+/// to 1/2.
 float jitterOf(uvec2 pixel) {
     uint noise = ((pixel.x * 288237660u + pixel.y * 25070368u) >> 8) * 13564u;
     return float(noise >> 8) * (1.0 / 16777216.0) - 0.5;

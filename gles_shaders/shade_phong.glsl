@@ -1,8 +1,8 @@
 // Blinn-Phong with a head light: light and eye are in one direction, so the half vector is too. The
 // gradient is by central differences of the trilinear field, half a voxel to each side, carried to
-// patient space; where it is too small to point anywhere the colour stays unlit. Light is mediump, but not
-// what would lose its digits there: differences of neighbouring values, and what is raised to a high
-// power.
+// patient space; where it is too small to point anywhere the colour stays unlit. Light is mediump,
+// but not what would lose its digits there: differences of neighbouring values, and what is raised
+// to a high power.
 mediump vec3 shade(mediump vec3 colour, vec3 uvw, Ray ray) {
     vec3 h = 0.5 / fieldSize();
     vec3 difference = vec3(
