@@ -16,6 +16,9 @@ from pathlib import Path
 
 from report_test import external, png
 
+sys.path.insert(0, str(Path(__file__).resolve().parent / "support"))
+from report_pages import ReportTest  # noqa: E402
+
 REPORT = Path(__file__).resolve().parent.parent / "perf" / "error_report.py"
 SPACINGS = (4, 2, 1, 0.5, 0.25)
 LAYERS = (1, 8, 16, 64, 0)
@@ -191,20 +194,9 @@ class WholePageTest(unittest.TestCase):
         self.assertEqual(len(ids), len(set(ids)))
 
 
-class ErrorReportTest(unittest.TestCase):
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
-
-    def refusal(self, expected, data=None):
-        if data is not None:
-            (self.folder / "error.json").write_text(data if isinstance(data, str) else json.dumps(data))
-        result = run(self.folder)
-        self.assertEqual(result.returncode, 1)
-        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
-        self.assertIn(expected, result.stderr)
-        self.assertEqual([p.name for p in self.folder.glob("*.html")], [])
+class ErrorReportTest(ReportTest):
+    report = REPORT
+    data = "error.json"
 
     def test_lives_without_the_optional_keys(self):
         entry = row("post", "rgba8", "off", False, 1, 0)

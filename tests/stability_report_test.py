@@ -15,6 +15,9 @@ from pathlib import Path
 
 from report_test import external, png
 
+sys.path.insert(0, str(Path(__file__).resolve().parent / "support"))
+from report_pages import ReportTest  # noqa: E402
+
 REPORT = Path(__file__).resolve().parent.parent / "perf" / "stability_report.py"
 METHODS = ("slicing, rgba8", "hybrid, rgba8", "ray casting, rgba8", "slicing, rgba16f", "ray casting, rgba16f")
 PIXEL = "the pixel's own bound: filter, float32 positions, table and blending, each rounded once"
@@ -143,20 +146,9 @@ class WholePageTest(unittest.TestCase):
         self.assertEqual(set(re.findall(r'href="#([^"]+)"', self.text)) - set(ids), set())
 
 
-class StabilityReportTest(unittest.TestCase):
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
-
-    def refusal(self, expected, data=None):
-        if data is not None:
-            (self.folder / "stability.json").write_text(data if isinstance(data, str) else json.dumps(data))
-        result = run(self.folder)
-        self.assertEqual(result.returncode, 1)
-        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
-        self.assertIn(expected, result.stderr)
-        self.assertEqual([p.name for p in self.folder.glob("*.html")], [])
+class StabilityReportTest(ReportTest):
+    report = REPORT
+    data = "stability.json"
 
     def test_all_is_well_and_nothing_optional_is_there(self):
         (self.folder / "stability.json").write_text(json.dumps({"cases": [
