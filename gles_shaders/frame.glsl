@@ -20,13 +20,16 @@ layout(std140) uniform FrameBlock {
                          // z: per mm, extinction where a table texel's alpha is 1, or
                          // 1 / reference length of pre-classified texels
     vec4 tableEnds[2];   // of a pre-integrated table: its first and last texel
-    vec4 skipMap;        // xyz: blocks per unit of uvw; w: free length per count, mm
+    vec4 skipMap;        // xyz: blocks or leaves per unit of uvw; w: free length per count, mm
     vec4 decode;         // xy: sampled value of an exact texel = dot(texel.rg, xy)
     vec4 gradientRow[3]; // rows: patient-space gradient from differences per voxel; w of 0: floor
     vec4 patientRow[3];  // rows: patient-space direction from one in uvw
     vec4 material;       // ambient, diffuse, specular, shininess
     ivec4 counts;        // first plane, planes drawn, layers per plane, planes per outline
-    ivec4 skipBlocks;    // xyz: number of blocks - 1
+    ivec4 skipBlocks;    // xyz: number of blocks or leaves - 1
+    ivec4 octree;        // mip level of the initial nodes; nodes per texel: log2, less one;
+                         // bits per node
+    uvec4 nodeTest;      // what of a node's bits or codes the transfer function makes visible
     ivec4 jitter;        // xy: the viewport's corner in pixels; z: 1 where rays are jittered
 };
 #define firstPlane counts.x

@@ -1,8 +1,5 @@
 // Nothing is skipped: one stretch for the whole ray.
-struct Stretch {
-    int layers; // from the sample on, the sample included
-    bool free;  // certain to be invisible
-};
+#include "skip_stretch.glsl"
 
 bool segmentIsEmpty(Ray ray, ivec2 range) {
     return false;

@@ -1,17 +1,8 @@
-// Proximity clouds (Tukora 2020, section 2.3), one byte per block: 0 where something visible may be
-// met, else 1 + the free distance around any point of the block in units of skipMap.w. See
+// Proximity clouds (Tukora 2020, section 2.3): 0 where something visible may be met, else 1 + the
+// free distance around any point of the block in units of skipMap.w. See
 // core/skip/proximity_cloud.h.
-uniform usampler3D freeLengths;
-
-struct Stretch {
-    int layers; // from the sample on, the sample included
-    bool free;  // certain to be invisible
-};
-
-int freeCount(vec3 blockPosition) {
-    countSkipFetch();
-    return int(texelFetch(freeLengths, clamp(ivec3(blockPosition), ivec3(0), skipBlocks.xyz), 0).r);
-}
+#include "skip_stretch.glsl"
+#include "skip_grid.glsl"
 
 /// Samples strictly within the free length, and at least the one it is counted from.
 int samplesWithin(int count, Ray ray) {
@@ -23,20 +14,19 @@ int samplesWithin(int count, Ray ray) {
 bool segmentIsEmpty(Ray ray, ivec2 range) {
     int last = range.y - 1 + kSharedEnds; // sample
     int middle = (range.x + last) / 2;
-    int count = freeCount(samplePosition(ray, middle) * skipMap.xyz);
+    int count = freeCount(blockAt(samplePosition(ray, middle) * skipMap.xyz));
     int reach = max(middle - range.x, last - middle);
     return count > 0 && max(1, samplesWithin(count, ray)) > reach;
 }
 
 /// What one fetch decides: all layers that begin within the block, free or not, and those within
-/// its free length; a layer is free whose samples all are. Blocks are tested with a voxel's margin,
-/// so rounding at their faces does not matter.
+/// its free length. Blocks are tested with a voxel's margin, so rounding at their faces does not
+/// matter.
 Stretch stretchAt(vec3 uvw, Ray ray) {
     vec3 position = uvw * skipMap.xyz;
-    int count = freeCount(position);
+    int count = freeCount(blockAt(position));
     vec3 ahead = vec3(greaterThan(ray.step, vec3(0.0))) - (position - floor(position));
     vec3 toFace = abs(ahead * ray.inverseStep / skipMap.xyz);
     int inBlock = int(min(min(toFace.x, min(toFace.y, toFace.z)), 1.0e6)) + 1;
-    int free = count > 0 ? max(inBlock, samplesWithin(count, ray)) - kSharedEnds : 0;
-    return Stretch(free > 0 ? free : inBlock, free > 0);
+    return stretchOf(count > 0 ? max(inBlock, samplesWithin(count, ray)) : inBlock, count > 0);
 }

@@ -108,7 +108,7 @@ void expectExplained(const FramePlan& p, const SceneFacts& facts) {
         std::string(name(p.lattice.kind)) + " lattice",
         "ratio " + name(ratio),
         std::string("classification ") + name(p.variant.classification),
-        std::string("skip ") + name(p.variant.skip),
+        std::string("skip ") + name(p.skip),
         p.variant.terminates ? "termination" : "no termination",
         p.tighten ? "tight planes" : "10-gons",
         std::string("target ") + name(p.target),
@@ -306,13 +306,12 @@ TEST(FramePlan, TerminationIsLeftOutWhereItCannotHappen) {
 
 TEST(FramePlan, SkippingIsLeftOutWhereNothingIsEmpty) {
     SceneFacts facts = boneFacts();
-    EXPECT_EQ(planned({}, facts).variant.skip, SkipStructure::Proximity);
+    EXPECT_EQ(planned({}, facts).skip, SkipStructure::Proximity);
     facts.occupiedFraction = 1.0;
-    EXPECT_EQ(planned({}, facts).variant.skip, SkipStructure::None);
-    EXPECT_EQ(planned({.skip = SkipStructure::Proximity}, facts).variant.skip,
-              SkipStructure::Proximity);
+    EXPECT_EQ(planned({}, facts).skip, SkipStructure::None);
+    EXPECT_EQ(planned({.skip = SkipStructure::Proximity}, facts).skip, SkipStructure::Proximity);
     facts.occupiedFraction = 0.0;
-    EXPECT_EQ(planned({.skip = SkipStructure::None}, facts).variant.skip, SkipStructure::None);
+    EXPECT_EQ(planned({.skip = SkipStructure::None}, facts).skip, SkipStructure::None);
 }
 
 TEST(FramePlan, BakedTexelsNeedNeitherGradientsNorFetches) {

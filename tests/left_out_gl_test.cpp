@@ -43,7 +43,7 @@ TEST_F(LeftOutTest, DriverReportsTheSamplersThatThePlanNeeds) {
     const Scene half = halfScene(0.05);
     const FramePlan skipping = decide(half, open());
     prepare(half, skipping);
-    EXPECT_EQ(samplersOf(skipping), (Names{"freeLengths", "transferTable", "volumeTexels"}));
+    EXPECT_EQ(samplersOf(skipping), (Names{"skipTexels", "transferTable", "volumeTexels"}));
     EXPECT_GT(renderer().gpuMemory().skipBytes, 0);
 
     const Scene full =

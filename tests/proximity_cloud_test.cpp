@@ -102,7 +102,7 @@ int randomEdge() {
     return *rc::gen::element(1, 2, 4, 8);
 }
 
-ProximityCloud built(const SkipScene& scene, int edge) {
+FreeLengths built(const SkipScene& scene, int edge) {
     const auto cloud = buildProximityCloud(scene.visibility(), scene.geometry, edge);
     EXPECT_TRUE(cloud.has_value());
     return *cloud;
@@ -115,21 +115,21 @@ RC_GTEST_PROP(ProximityCloud, OccupiesTheBlocksThatVisibleCellsMeet, ()) {
     const auto occupancy = occupiedBlocks(scene.visibility(), edge);
     RC_ASSERT(occupancy.has_value());
     RC_ASSERT(occupancy->occupied == expected);
-    const ProximityCloud cloud = built(scene, edge);
+    const FreeLengths cloud = built(scene, edge);
     forBox(glm::ivec3(0), cloud.blocks, [&](glm::ivec3 block) {
         const bool occupied = expected[indexOf(block, cloud.blocks)] != 0;
-        RC_ASSERT((cloud.freeLengths[indexOf(block, cloud.blocks)] == 0) == occupied);
+        RC_ASSERT((cloud.counts[indexOf(block, cloud.blocks)] == 0) == occupied);
     });
     RC_ASSERT(cloud.occupiedBlocks == std::count(expected.begin(), expected.end(), 1));
 }
 
 /// Checks every free block against all pairs. `loss`: the part of a length that rounding may take.
 void checkLengths(const SkipScene& scene, int edge, double loss) {
-    const ProximityCloud cloud = built(scene, edge);
+    const FreeLengths cloud = built(scene, edge);
     const std::vector<std::uint8_t> occupied = occupiedByTheWords(scene, edge);
     RC_ASSERT(cloud.quantumMm == scene.geometry.smallestVoxelEdgeMm());
     forBox(glm::ivec3(0), cloud.blocks, [&](glm::ivec3 block) {
-        const int stored = cloud.freeLengths[indexOf(block, cloud.blocks)];
+        const int stored = cloud.counts[indexOf(block, cloud.blocks)];
         const double quanta = nearestInQuanta(block, cloud.blocks, occupied, scene.geometry, edge);
         if (quanta < 0.0) {
             RC_ASSERT(stored == 255);
@@ -158,7 +158,7 @@ RC_GTEST_PROP(ProximityCloud, LengthsAreLowerBoundsForAnySpacing, ()) {
 /// Random free blocks, random points of them, random directions: what lies nearer than the stored
 /// length must be transparent, also a voxel to the side of it (the margin) and outside the box
 /// (clamped).
-void checkSamples(const SkipScene& scene, const ProximityCloud& cloud, unsigned seed) {
+void checkSamples(const SkipScene& scene, const FreeLengths& cloud, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     std::normal_distribution<double> normal;
@@ -174,7 +174,7 @@ void checkSamples(const SkipScene& scene, const ProximityCloud& cloud, unsigned 
     for (int i = 0; i < 500; ++i) {
         const glm::ivec3 block =
             glm::min(glm::ivec3(vec(unit) * glm::dvec3(cloud.blocks)), cloud.blocks - 1);
-        const int stored = cloud.freeLengths[indexOf(block, cloud.blocks)];
+        const int stored = cloud.counts[indexOf(block, cloud.blocks)];
         if (stored == 0) {
             continue;
         }
@@ -207,10 +207,10 @@ RC_GTEST_PROP(ProximityCloud, NothingVisibleLiesWithinTheFreeLength, (unsigned s
 TEST(ProximityCloud, OneVoxelInALongRow) {
     SkipScene scene = constantScene({400, 1, 1}, 0, bandTable(256, 200, 255));
     scene.code({0, 0, 0}) = 255; // visible from 0 to 1.5, met by blocks up to 2.5: blocks 0, 1, 2
-    const ProximityCloud cloud = built(scene, 1);
+    const FreeLengths cloud = built(scene, 1);
     for (int x = 0; x < 400; ++x) {
         const int gap = x - 2 - 1;
-        EXPECT_EQ(cloud.freeLengths[x], x <= 2 ? 0 : std::min(255, 1 + gap)) << x;
+        EXPECT_EQ(cloud.counts[x], x <= 2 ? 0 : std::min(255, 1 + gap)) << x;
     }
     EXPECT_EQ(cloud.occupiedBlocks, 3);
 }
@@ -219,8 +219,8 @@ TEST(ProximityCloud, RatiosThatRoundBelowAWholeNumberAreMeantAsIt) {
     SkipScene scene = constantScene({1, 1, 40}, 0, bandTable(256, 200, 255));
     scene.code({0, 0, 0}) = 255;
     scene.geometry.spacingMm = {0.2, 0.2, 0.6};
-    const ProximityCloud cloud = built(scene, 4);
-    EXPECT_EQ(cloud.freeLengths, (std::vector<std::uint8_t>{0, 1, 13, 25, 37, 49, 61, 73, 85, 97}));
+    const FreeLengths cloud = built(scene, 4);
+    EXPECT_EQ(cloud.counts, (std::vector<std::uint8_t>{0, 1, 13, 25, 37, 49, 61, 73, 85, 97}));
 }
 
 TEST(ProximityCloud, ShearShortensLengthsByTheSmallestSingularValue) {
@@ -228,27 +228,27 @@ TEST(ProximityCloud, ShearShortensLengthsByTheSmallestSingularValue) {
     scene.code({0, 0, 0}) = 255;
     const double cosine = 0.6; // of the angle between x and y: sigma_min = sqrt(1 - 0.6)
     scene.geometry.direction[1] = glm::dvec3(cosine, std::sqrt(1.0 - cosine * cosine), 0.0);
-    const ProximityCloud cloud = built(scene, 4);
+    const FreeLengths cloud = built(scene, 4);
     for (int b = 1; b < 16; ++b) {
-        EXPECT_EQ(cloud.freeLengths[b], 1 + int(std::sqrt(0.4) * 4.0 * (b - 1))) << b;
+        EXPECT_EQ(cloud.counts[b], 1 + int(std::sqrt(0.4) * 4.0 * (b - 1))) << b;
     }
 }
 
 TEST(ProximityCloud, RotatedAxesCostNothing) {
     SkipScene scene = constantScene({40, 1, 1}, 0, bandTable(256, 200, 255));
     scene.code({0, 0, 0}) = 255;
-    const ProximityCloud straight = built(scene, 4);
+    const FreeLengths straight = built(scene, 4);
     // A rotation as a file holds it, six digits each.
     scene.geometry.direction = glm::dmat3(0.353553, 0.612372, -0.707107, -0.573223, 0.739199,
                                           0.353553, 0.739199, 0.280330, 0.612372);
-    EXPECT_EQ(built(scene, 4).freeLengths, straight.freeLengths);
+    EXPECT_EQ(built(scene, 4).counts, straight.counts);
 }
 
 TEST(ProximityCloud, NothingVisibleIsFreeEverywhere) {
     const SkipScene scene = constantScene({9, 7, 5}, 0, bandTable(256, 200, 255));
-    const ProximityCloud cloud = built(scene, 4);
+    const FreeLengths cloud = built(scene, 4);
     EXPECT_EQ(cloud.blocks, glm::ivec3(3, 2, 2));
-    EXPECT_EQ(cloud.freeLengths, std::vector<std::uint8_t>(12, 255));
+    EXPECT_EQ(cloud.counts, std::vector<std::uint8_t>(12, 255));
     EXPECT_EQ(cloud.occupiedBlocks, 0);
 }
 
@@ -272,7 +272,7 @@ TEST(ProximityCloud, StopsWhenCancelled) {
 TEST(ProximityCloud, CutsTheLastBlockOfAnAxis) {
     SkipScene scene = constantScene({21, 1, 1}, 0, bandTable(256, 200, 255));
     scene.code({20, 0, 0}) = 255; // visible from 19.5 to 21: the last two blocks of six
-    EXPECT_EQ(built(scene, 4).freeLengths, (std::vector<std::uint8_t>{13, 9, 5, 1, 0, 0}));
+    EXPECT_EQ(built(scene, 4).counts, (std::vector<std::uint8_t>{13, 9, 5, 1, 0, 0}));
 }
 
 } // namespace

@@ -195,14 +195,13 @@ TEST(SphereStack, GroupsOfPlanesAreDrawnAsSquares) {
 }
 
 /// A cloud with some blocks occupied: all that the stack reads of one.
-ProximityCloud randomCloud(Dice& dice, glm::ivec3 dims) {
-    ProximityCloud cloud;
+FreeLengths randomCloud(Dice& dice, glm::ivec3 dims) {
+    FreeLengths cloud;
     cloud.blockEdgeVoxels = 1 << dice.below(4);
     cloud.blocks = (dims + cloud.blockEdgeVoxels - 1) / cloud.blockEdgeVoxels;
-    cloud.freeLengths.resize(static_cast<std::size_t>(cloud.blocks.x) * cloud.blocks.y *
-                             cloud.blocks.z);
+    cloud.counts.resize(static_cast<std::size_t>(cloud.blocks.x) * cloud.blocks.y * cloud.blocks.z);
     const double share = std::array{0.0, 0.02, 0.3, 1.0}[dice.below(4)];
-    for (std::uint8_t& length : cloud.freeLengths) {
+    for (std::uint8_t& length : cloud.counts) {
         length = dice.chance(share) ? 0 : 1;
         cloud.occupiedBlocks += length == 0;
     }
@@ -210,12 +209,12 @@ ProximityCloud randomCloud(Dice& dice, glm::ivec3 dims) {
 }
 
 /// Whether the place that the texture unit reads, clamped to the edge, lies in an occupied block.
-bool isOccupied(const ProximityCloud& cloud, glm::ivec3 dims, glm::dvec3 uvw) {
+bool isOccupied(const FreeLengths& cloud, glm::ivec3 dims, glm::dvec3 uvw) {
     const glm::dvec3 voxel = glm::clamp(uvw, 0.0, 1.0) * glm::dvec3(dims);
     const glm::ivec3 block =
         glm::min(glm::ivec3(voxel / double(cloud.blockEdgeVoxels)), cloud.blocks - 1);
-    return cloud.freeLengths[(std::size_t(block.z) * cloud.blocks.y + block.y) * cloud.blocks.x +
-                             block.x] == 0;
+    return cloud.counts[(std::size_t(block.z) * cloud.blocks.y + block.y) * cloud.blocks.x +
+                        block.x] == 0;
 }
 
 /// Length of the view's most oblique layer.
@@ -233,7 +232,7 @@ TEST(TightStack, EveryOccupiedSampleLiesOnItsPlane) {
         for (int view = 0; view < 2000; ++view) {
             const Dealt d = randomDeal(dice, planes);
             const VolumeGeometry& geometry = d.scene.geometry;
-            const ProximityCloud cloud = randomCloud(dice, geometry.dims);
+            const FreeLengths cloud = randomCloud(dice, geometry.dims);
             const std::vector<VisibleBox> boxes =
                 visibleBoxes(cloud, geometry, longestLayerMm(d.scene));
             const ProxyStack stack =
@@ -294,7 +293,7 @@ TEST(VisibleBoxes, HoldEveryOccupiedBlock) {
     Dice dice(11);
     for (int k = 0; k < 200; ++k) {
         const VolumeGeometry geometry = test::randomGeometry(dice);
-        const ProximityCloud cloud = randomCloud(dice, geometry.dims);
+        const FreeLengths cloud = randomCloud(dice, geometry.dims);
         const std::vector<VisibleBox> boxes = visibleBoxes(cloud, geometry, 1e-3);
         const auto inBoxes = [&](glm::dvec3 uvw) {
             return std::any_of(boxes.begin(), boxes.end(), [&](const VisibleBox& box) {
@@ -313,10 +312,10 @@ TEST(VisibleBoxes, HoldEveryOccupiedBlock) {
 }
 
 TEST(VisibleBoxes, ReachHalfALayerBeyondTheVolumesFacesAlone) {
-    ProximityCloud cloud;
+    FreeLengths cloud;
     cloud.blockEdgeVoxels = 8;
     cloud.blocks = {3, 1, 1};
-    cloud.freeLengths = {1, 0, 0};
+    cloud.counts = {1, 0, 0};
     const VolumeGeometry geometry{.dims = {20, 8, 8}, .spacingMm = {1.0, 2.0, 1.0}};
     const std::vector<VisibleBox> boxes = visibleBoxes(cloud, geometry, 4.0);
     ASSERT_EQ(boxes.size(), 2U);

@@ -261,11 +261,11 @@ std::size_t occurrences(const std::string& text, const std::string& word) {
 TEST_F(RendererUpkeepTest, WhatIsOffIsAbsentFromTheProgram) {
     const ShaderVariant plain{.unroll = 4};
     ShaderVariant skipping = plain;
-    skipping.skip = SkipStructure::Proximity;
+    skipping.skip = SkipForm::Balls;
     ShaderVariant baked = plain;
     baked.classification = Classification::Pre;
     const std::vector<std::string> scalars = {"transferTable", "volumeTexels"};
-    const std::vector<std::string> all = {"freeLengths", "transferTable", "volumeTexels"};
+    const std::vector<std::string> all = {"skipTexels", "transferTable", "volumeTexels"};
     EXPECT_EQ(samplersOf(plain), scalars);
     EXPECT_EQ(samplersOf(skipping), all);
     EXPECT_EQ(samplersOf(baked), std::vector<std::string>{"volumeTexels"});
@@ -276,8 +276,7 @@ TEST_F(RendererUpkeepTest, WhatIsOffIsAbsentFromTheProgram) {
         const char* word;
         bool (*on)(const ShaderVariant&);
     } words[] = {
-        {"texelFetch(freeLengths",
-         [](const ShaderVariant& v) { return v.skip == SkipStructure::Proximity; }},
+        {"texelFetch(skipTexels", [](const ShaderVariant& v) { return v.skip != SkipForm::None; }},
         {"smoothstep(", [](const ShaderVariant& v) { return v.shaded; }},
         {"texelFetch(volumeTexels", [](const ShaderVariant& v) { return v.exactField; }},
         {"alpha > viewport.w", [](const ShaderVariant& v) { return v.terminates; }},

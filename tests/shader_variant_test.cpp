@@ -66,10 +66,9 @@ TEST(ShaderVariant, ValidityKnowsLengthsAndBakedTexels) {
 }
 
 TEST(ShaderVariant, NamesAreAsDocumented) {
-    EXPECT_EQ(
-        name(ShaderVariant{
-            .skip = SkipStructure::Proximity, .shaded = true, .terminates = true, .unroll = 16}),
-        "post+proximity+shaded+terminate/unroll16");
+    EXPECT_EQ(name(ShaderVariant{
+                  .skip = SkipForm::Balls, .shaded = true, .terminates = true, .unroll = 16}),
+              "post+balls+shaded+terminate/unroll16");
     EXPECT_EQ(name(ShaderVariant{}), "post/loop");
 }
 
@@ -90,8 +89,8 @@ TEST(ShaderVariant, WhatIsOffIsAbsentFromTheText) {
         const char* token;
         std::function<bool(const V&)> present;
     } rules[] = {
-        {"usampler3D freeLengths;", [](const V& v) { return v.skip == SkipStructure::Proximity; }},
-        {"texelFetch(freeLengths", [](const V& v) { return v.skip == SkipStructure::Proximity; }},
+        {"usampler3D skipTexels;", [](const V& v) { return v.skip != SkipForm::None; }},
+        {"texelFetch(skipTexels", [](const V& v) { return v.skip != SkipForm::None; }},
         {"sampler2D transferTable;",
          [](const V& v) { return v.classification != Classification::Pre; }},
         {"texelFetch(transferTable", post},

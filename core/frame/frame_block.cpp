@@ -1,8 +1,10 @@
 #include "core/frame/frame_block.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "core/frame/scene.h"
+#include "core/skip/skip_texture.h"
 #include "core/transfer/table_axis.h"
 
 namespace slabcast {
@@ -22,10 +24,25 @@ glm::vec4 decodeWeights(TexelFormat format) {
                                            : glm::vec4(1.0F, 0.0F, 0.0F, 0.0F);
 }
 
-void fillSkip(FrameBlock& block, const ProximityCloud& cloud, glm::ivec3 dims) {
+/// As the texture's components hold a node: 64 bits lie in four components of 16.
+glm::uvec4 shaderTest(const NodeTest& test, int bitsPerNode) {
+    const glm::uvec4& w = test.words;
+    return bitsPerNode == 64 ? glm::uvec4(w.x & 0xffffU, w.x >> 16, w.y & 0xffffU, w.y >> 16) : w;
+}
+
+void fillSkip(FrameBlock& block, const BuiltSkip& skip, glm::ivec3 dims) {
+    const int edge = skip.options.blockEdgeVoxels;
+    const glm::ivec3 blocks = (dims + edge - 1) / edge;
     block.skipMap =
-        packed(glm::dvec3(dims) / static_cast<double>(cloud.blockEdgeVoxels), cloud.quantumMm);
-    block.skipBlocks = glm::ivec4(cloud.blocks - 1, 0);
+        packed(glm::dvec3(dims) / double(edge), skip.lengths ? skip.lengths->quantumMm : 0.0);
+    block.skipBlocks = glm::ivec4(blocks - 1, 0);
+    if (skip.octree) {
+        const int bits = skip.octree->bitsPerNode;
+        const int perTexel = octreeLayout(blocks, skip.octree->coarsest() + 1, bits).perTexel;
+        block.octree = {skip.octree->coarsest(), std::countr_zero(unsigned(perTexel)), perTexel - 1,
+                        bits};
+        block.nodeTest = shaderTest(skip.test, bits);
+    }
 }
 
 void fillShading(FrameBlock& block, const ShadingParameters& shading,
@@ -72,8 +89,8 @@ FrameBlock makeFrameBlock(const RayFrame& f, const Scene& scene, const FramePlan
         block.tableEnds = {table->at(0, 0), table->at(last, last)};
     }
     block.decode = decodeWeights(scene.texels().format);
-    if (scene.cloud() != nullptr) {
-        fillSkip(block, *scene.cloud(), scene.geometry().dims);
+    if (scene.skip().exists()) {
+        fillSkip(block, scene.skip(), scene.geometry().dims);
     }
     if (scene.look().shading) {
         fillShading(block, *scene.look().shading, scene.geometry(), scene.texels().valueScale);

@@ -27,9 +27,11 @@ struct FrameBlock {
     glm::vec4 material;
     glm::ivec4 counts;
     glm::ivec4 skipBlocks;
+    glm::ivec4 octree;
+    glm::uvec4 nodeTest;
     glm::ivec4 jitter;
 };
-static_assert(sizeof(FrameBlock) == 16 * 25);
+static_assert(sizeof(FrameBlock) == 16 * 27);
 
 class Scene;
 

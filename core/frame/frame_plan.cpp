@@ -71,6 +71,18 @@ Result<void> check(const Settings& s) {
     return {};
 }
 
+/// A plan skips by what was built, or not at all.
+Result<void> checkSkip(const SceneFacts& facts, const Settings& settings) {
+    const SkipStructure built = facts.skip.structure;
+    const SkipStructure asked = settings.skip.value_or(SkipStructure::None);
+    if (asked == SkipStructure::None || built == SkipStructure::None || asked == built) {
+        return {};
+    }
+    return fail(ErrorCode::InvalidArgument,
+                std::string("skip ") + name(asked) + " was asked for, but what was built is " +
+                    name(built) + ": set the look with skip options of that structure");
+}
+
 int planesFor(int total, int layersPerPlane) {
     return (total + layersPerPlane - 1) / layersPerPlane;
 }
@@ -150,22 +162,28 @@ struct Planner {
         return ratio;
     }
 
+    /// The structure that was built, or none: asked for, or where it would not pay.
     void chooseSkip() {
-        if (!facts.occupancyKnown) {
-            plan.variant.skip = SkipStructure::None;
+        const std::string occupied = number(100.0 * facts.occupiedFraction);
+        const SkipStructure built = facts.skip.structure;
+        if (built == SkipStructure::None) {
             because("skip none", "no skip structure was built for this look");
+        } else if (settings.skip == SkipStructure::None) {
+            because("skip none", "asked for");
         } else if (settings.skip) {
-            plan.variant.skip = *settings.skip;
-            because(std::string("skip ") + name(*settings.skip), "asked for");
+            takeSkip("asked for");
         } else if (facts.occupiedFraction > kWorthSkipping) {
-            plan.variant.skip = SkipStructure::None;
-            because("skip none", number(100.0 * facts.occupiedFraction) +
-                                     " % of the blocks hold something visible");
+            because("skip none", occupied + " % of the blocks hold something visible");
         } else {
-            plan.variant.skip = SkipStructure::Proximity;
-            because("skip proximity", "only " + number(100.0 * facts.occupiedFraction) +
-                                          " % of the blocks hold something visible");
+            takeSkip("only " + occupied + " % of the blocks hold something visible");
         }
+    }
+
+    void takeSkip(std::string why) {
+        plan.skip = facts.skip.structure;
+        plan.variant.skip = formOf(facts.skip);
+        plan.variant.topDown = isOctree(plan.skip) && facts.skip.traversal == Traversal::TopDown;
+        because(std::string("skip ") + name(plan.skip), std::move(why));
     }
 
     std::string reasonOfClassification() const {
@@ -251,9 +269,9 @@ struct Planner {
 
 /// Everything but the reasons. A new member does not compile until it is named here.
 auto decided(const FramePlan& plan) {
-    const auto& [lattice, planes, layers, variant, tight, format, space, alpha, nothing, reasons] =
-        plan;
-    return std::tie(lattice, planes, layers, variant, tight, format, space, alpha, nothing);
+    const auto& [lattice, planes, layers, variant, skip, tight, format, space, alpha, nothing,
+                 reasons] = plan;
+    return std::tie(lattice, planes, layers, variant, skip, tight, format, space, alpha, nothing);
 }
 
 } // namespace
@@ -300,6 +318,9 @@ Result<FramePlan> plan(const SceneFacts& facts, const Settings& settings, const 
     if (Result<void> ok = check(settings); !ok) {
         return tl::unexpected(ok.error());
     }
+    if (Result<void> ok = checkSkip(facts, settings); !ok) {
+        return tl::unexpected(ok.error());
+    }
     Planner planner{facts, settings, caps, {}};
     planner.chooseLattice();
     if (planner.plan.lattice.total > kMaxTotalLayers) {
@@ -340,7 +361,7 @@ Result<FramePlan> plan(const SceneFacts& facts, const Settings& settings, const 
     }
     planner.chooseSkip();
     planner.chooseTermination();
-    result.tighten = settings.tighten && facts.occupancyKnown;
+    result.tighten = settings.tighten && facts.skip.structure != SkipStructure::None;
     planner.because(result.tighten ? "tight planes" : "10-gons",
                     result.tighten
                         ? "each plane is the rectangle around what is visible in its slab"

@@ -43,9 +43,8 @@ struct SceneFacts {
     double smallestVoxelEdgeMm = 1.0;
     bool exactField = false;
     bool anythingVisible = true;
-    bool occupancyKnown =
-        true; // a skip structure was built: planes can be tightened, space skipped
-    double occupiedFraction = 1.0; // of the skip structure's blocks
+    SkipOptions skip; // the structure that was built: what can skip, and tighten planes
+    double occupiedFraction = 1.0; // of its blocks or leaves
     bool oneMaterial = false;      // the transfer function is constant over the data
     double maxExtinctionPerMm = 0.0;
     double visibleColorRange = 1.0; // of any channel
@@ -83,6 +82,7 @@ struct FramePlan {
     int planes = 1;
     int layersPerPlane = 1;
     ShaderVariant variant;
+    SkipStructure skip = SkipStructure::None;
     bool tighten = false;
     TargetFormat target = TargetFormat::Rgba8;
     CompositingSpace space = CompositingSpace::Display;

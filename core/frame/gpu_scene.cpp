@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "core/skip/skip_texture.h"
 #include "core/volume/volume_texture.h"
 
 namespace slabcast {
@@ -26,7 +27,7 @@ GpuScene::Sources GpuScene::needs(const Scene& scene, const FramePlan& plan) {
     const int look = scene.lookGeneration();
     const bool pre = plan.variant.classification == Classification::Pre;
     return {pre ? look : scene.texelsGeneration(), pre ? 0 : look,
-            plan.variant.skip == SkipStructure::None ? 0 : look};
+            plan.skip == SkipStructure::None ? 0 : scene.skip().generation};
 }
 
 bool GpuScene::serve(const Scene& scene, const FramePlan& plan) const {
@@ -62,15 +63,16 @@ Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const g
         held_.skip = 0;
         skip_.release();
         skipBytes_ = 0;
+        skipBytes_ = 0;
         if (needed.skip != 0) {
-            SLABCAST_EXPECTS(scene.cloud() != nullptr, needed.skip);
-            const ProximityCloud& cloud = *scene.cloud();
-            if (Result<void> done =
-                    keep(skip_, uploadBytes3d(cloud.freeLengths, cloud.blocks, caps));
-                !done) {
-                return done;
+            const BuiltSkip& skip = scene.skip();
+            Result<SkipTexture> made = skip.octree ? uploadOctree(*skip.octree, caps)
+                                                   : uploadFreeLengths(*skip.lengths, caps);
+            if (!made) {
+                return tl::unexpected(made.error());
             }
-            skipBytes_ = static_cast<std::int64_t>(cloud.freeLengths.size());
+            skip_ = std::move(made->texture);
+            skipBytes_ = made->bytes;
         }
         held_.skip = needed.skip;
     }

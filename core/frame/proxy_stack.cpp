@@ -15,9 +15,6 @@ namespace {
 /// to 1/256 pixel.
 constexpr double kGrow = 1.0 + 1e-4;
 constexpr double kGrowPixels = 1.0 / 128.0;
-constexpr int kMacroBlockVoxels = 8;
-/// A view transforms the corners of every box: this many take well under a millisecond.
-constexpr std::int64_t kMaxBoxes = 16384;
 
 struct Circle {
     glm::dvec2 centre{0.0};
@@ -224,57 +221,6 @@ ProxyStack sphereStack(const RayFrame& frame, const Frustum& frustum, int planes
         outlines[p] = sphereOutline(frame, frustum, slabOf(frame, p, layersPerPlane));
     }
     return trimmed(std::move(outlines), frame);
-}
-
-std::vector<VisibleBox> visibleBoxes(const ProximityCloud& cloud, const VolumeGeometry& geometry,
-                                     double layerLengthMm) {
-    int merge = std::max(1, kMacroBlockVoxels / cloud.blockEdgeVoxels);
-    const auto boxCount = [&](int blocksPerBox) {
-        const glm::i64vec3 n((cloud.blocks + (blocksPerBox - 1)) / blocksPerBox);
-        return n.x * n.y * n.z;
-    };
-    while (boxCount(merge) > kMaxBoxes) {
-        merge *= 2;
-    }
-    const glm::ivec3 macro = (cloud.blocks + (merge - 1)) / merge;
-    std::vector<std::uint8_t> occupied(static_cast<std::size_t>(macro.x) * macro.y * macro.z, 0);
-    std::size_t block = 0;
-    for (int z = 0; z < cloud.blocks.z; ++z) {
-        for (int y = 0; y < cloud.blocks.y; ++y) {
-            std::uint8_t* row =
-                &occupied[(static_cast<std::size_t>(z / merge) * macro.y + y / merge) * macro.x];
-            for (int x = 0; x < cloud.blocks.x; ++x, ++block) {
-                row[x / merge] |= cloud.freeLengths[block] == 0;
-            }
-        }
-    }
-    const glm::dvec3 dims(geometry.dims);
-    const double edge = static_cast<double>(merge) * cloud.blockEdgeVoxels;
-    // Reach of half a layer in uvw: the rows of uvwFromModel bound how far a unit length goes along
-    // each axis.
-    const glm::dmat3 rows = glm::transpose(glm::dmat3(geometry.uvwFromModel()));
-    const glm::dvec3 reach =
-        glm::dvec3(glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2])) *
-            (layerLengthMm / 2.0) +
-        1e-3 / dims;
-    std::vector<VisibleBox> boxes;
-    for (int z = 0; z < macro.z; ++z) {
-        for (int y = 0; y < macro.y; ++y) {
-            for (int x = 0; x < macro.x; ++x) {
-                if (occupied[(static_cast<std::size_t>(z) * macro.y + y) * macro.x + x] == 0) {
-                    continue;
-                }
-                const glm::ivec3 index(x, y, z);
-                const glm::dvec3 low = glm::dvec3(index) * edge / dims;
-                const glm::dvec3 high =
-                    glm::min(glm::dvec3(index + 1) * edge / dims, glm::dvec3(1.0));
-                const glm::dvec3 atLow(glm::equal(index, glm::ivec3(0)));
-                const glm::dvec3 atHigh(glm::equal(index, macro - 1));
-                boxes.push_back({low - reach * atLow, high + reach * atHigh});
-            }
-        }
-    }
-    return boxes;
 }
 
 ProxyStack tightStack(const RayFrame& frame, const Frustum& frustum, const glm::dmat4& viewFromUvw,

@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 
 #include "core/frame/lattice.h"
-#include "core/skip/proximity_cloud.h"
+#include "core/frame/visible_boxes.h"
 
 namespace slabcast {
 
@@ -32,19 +32,6 @@ struct ProxyStack {
 /// dropped. Cost: O(planes). Source: Tukora 2020, section 2.1. Tested by: proxy_stack_test.cpp
 ProxyStack sphereStack(const RayFrame& frame, const Frustum& frustum, int planes,
                        int layersPerPlane);
-
-/// A box in uvw that may hold visible samples.
-struct VisibleBox {
-    glm::dvec3 low{0.0};
-    glm::dvec3 high{1.0};
-};
-
-/// The occupied blocks of a cloud, merged to boxes of eight voxels or more so that there are 16,384
-/// places for one at most. Boxes on the volume's faces reach half a layer further: there a layer's
-/// sample may lie outside, clamped. Depends on the TF and the layer length, not on the view. Cost:
-/// O(blocks). Tested by: proxy_stack_test.cpp
-std::vector<VisibleBox> visibleBoxes(const ProximityCloud& cloud, const VolumeGeometry& geometry,
-                                     double layerLengthMm);
 
 /// Rectangles around what the boxes show in each slab; slabs that no box meets are empty.
 /// Draws the same samples as sphereStack wherever they are visible. Cost: O(boxes x planes per box

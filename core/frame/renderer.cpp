@@ -51,6 +51,11 @@ void setBlending(GLenum source, GLenum destination) {
     gl::BlendFunc(source, destination);
 }
 
+std::vector<VisibleBox> visibleBoxesOf(const Scene& scene, double layerLengthMm) {
+    const BuiltSkip& skip = scene.skip();
+    return visibleBoxes(*skip.lengths, scene.geometry(), layerLengthMm);
+}
+
 } // namespace
 
 struct Renderer::State {
@@ -107,7 +112,7 @@ void Renderer::State::updateBoxes(const Scene& scene, double layerLengthMm) {
     if (boxesOfLook == scene.lookGeneration() && boxesOfLengthMm == length) {
         return;
     }
-    boxes = visibleBoxes(*scene.cloud(), scene.geometry(), length);
+    boxes = visibleBoxesOf(scene, length);
     boxesOfLook = scene.lookGeneration();
     boxesOfLengthMm = length;
 }
@@ -115,7 +120,7 @@ void Renderer::State::updateBoxes(const Scene& scene, double layerLengthMm) {
 void Renderer::State::drawStack(const Scene& scene, const FramePlan& plan, const View& view,
                                 const Viewport& viewport, const gl::Program& program) {
     const RayFrame frame = makeRayFrame(view, viewport, scene.geometry(), plan.lattice);
-    SLABCAST_EXPECTS(!plan.tighten || scene.cloud() != nullptr, plan.tighten);
+    SLABCAST_EXPECTS(!plan.tighten || scene.skip().exists(), plan.tighten);
     ProxyStack stack;
     if (plan.tighten) {
         const Frustum& f = view.frustum;

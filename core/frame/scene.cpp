@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <functional>
 
 #include "core/skip/cell_visibility.h"
@@ -50,9 +49,8 @@ Result<void> Scene::setLook(const Look& look, const SkipOptions& skip, int maxTa
         }
         classified_ = classify(texels_, geometry_, table(), settings);
     }
-    cloud_.reset();
-    return skip.structure == SkipStructure::Proximity ? buildCloud(skip.blockEdgeVoxels)
-                                                      : Result<void>{};
+    skip_ = {.options = {.structure = SkipStructure::None}};
+    return skip.structure == SkipStructure::None ? Result<void>{} : buildSkip(skip);
 }
 
 void Scene::buildTable(int maxTableSize) {
@@ -67,23 +65,21 @@ void Scene::buildTable(int maxTableSize) {
     }
 }
 
-Result<void> Scene::buildCloud(int blockEdgeVoxels) {
+Result<void> Scene::buildSkip(const SkipOptions& options) {
     const bool pre = classified_.has_value();
     if (!pre && !codes_) {
         codes_ = std::make_shared<TexelCodes>(encodeCodes(texels_));
     }
-    const auto start = std::chrono::steady_clock::now();
     const TexelCodes alpha = pre ? alphaCodes(*classified_) : TexelCodes{};
     const CellVisibility visibility =
         pre ? cellVisibilityOfAlpha(alpha)
             : cellVisibility(*codes_, texels_, table(), filterErrorSampled_);
-    Result<ProximityCloud> cloud = buildProximityCloud(visibility, geometry_, blockEdgeVoxels);
-    if (!cloud) {
-        return tl::unexpected(cloud.error());
+    Result<BuiltSkip> built =
+        slabcast::buildSkip({pre ? alpha : *codes_, visibility, geometry_}, options);
+    if (!built) {
+        return tl::unexpected(built.error());
     }
-    cloud_ = std::move(*cloud);
-    cloudBuildMs_ =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    skip_ = std::move(*built);
     return {};
 }
 
@@ -92,12 +88,8 @@ SceneFacts Scene::facts() const {
     facts.sphere = geometry_.boundingSphere();
     facts.smallestVoxelEdgeMm = geometry_.smallestVoxelEdgeMm();
     facts.exactField = isExact(texels_.format);
-    facts.occupancyKnown = cloud_.has_value();
-    if (cloud_) {
-        const glm::dvec3 blocks(cloud_->blocks);
-        facts.occupiedFraction =
-            static_cast<double>(cloud_->occupiedBlocks) / (blocks.x * blocks.y * blocks.z);
-    }
+    facts.skip = skip_.options;
+    facts.occupiedFraction = skip_.occupiedFraction;
     const std::vector<glm::vec4>& texels = table().texels;
     facts.oneMaterial =
         std::adjacent_find(texels.begin(), texels.end(), std::not_equal_to<>()) == texels.end();
@@ -109,7 +101,7 @@ SceneFacts Scene::facts() const {
     facts.visibleColorRange =
         visibleColorRange(look_.tf, statistics_.min, statistics_.max, look_.space);
     facts.anythingVisible =
-        facts.maxExtinctionPerMm > 0.0 && (!cloud_ || cloud_->occupiedBlocks > 0);
+        facts.maxExtinctionPerMm > 0.0 && (!skip_.exists() || skip_.occupiedFraction > 0.0);
     return facts;
 }
 

@@ -7,7 +7,7 @@
 
 #include "core/frame/frame_plan.h"
 #include "core/frame/proxy_stack.h"
-#include "core/skip/proximity_cloud.h"
+#include "core/skip/built_skip.h"
 #include "core/transfer/preclassified.h"
 #include "core/transfer/preintegrated.h"
 #include "core/transfer/shading.h"
@@ -27,11 +27,6 @@ struct Look {
         0.0, -1.0, 0.0}; // patient space, towards the light; for pre-classified texels
 };
 
-struct SkipOptions {
-    SkipStructure structure = SkipStructure::Proximity;
-    int blockEdgeVoxels = 4;
-};
-
 /// A volume under a transfer function, on the host: what the renderer's textures are made from and
 /// can be made from again. No GL. Not thread-safe; heavy steps use all cores inside.
 class Scene {
@@ -42,7 +37,7 @@ public:
 
     /// Replaces the look; builds the table, what pre-classification and skipping need, and nothing
     /// else. Fails: InvalidTransferFunction, InvalidArgument. Cost: O(voxels) where texels or a
-    /// cloud are built.
+    /// skip structure are built.
     Result<void> setLook(const Look& look, const SkipOptions& skip, int maxTableSize);
 
     SceneFacts facts() const;
@@ -60,8 +55,7 @@ public:
     const PreintegratedTable* preintegrated() const {
         return preintegrated_ ? &*preintegrated_ : nullptr;
     }
-    const ProximityCloud* cloud() const { return cloud_ ? &*cloud_ : nullptr; }
-    double cloudBuildMs() const { return cloudBuildMs_; }
+    const BuiltSkip& skip() const { return skip_; }
     /// Numbers that no other texels and no other look of this process have: textures made from
     /// others are stale.
     int texelsGeneration() const { return texelsGeneration_; }
@@ -72,7 +66,7 @@ public:
 
 private:
     void buildTable(int maxTableSize);
-    Result<void> buildCloud(int blockEdgeVoxels);
+    Result<void> buildSkip(const SkipOptions& options);
 
     std::string volumeName_;
     VolumeGeometry geometry_;
@@ -80,13 +74,12 @@ private:
     VolumeStatistics statistics_;
     Texels texels_;
     double filterErrorSampled_ = 0.0;
-    std::shared_ptr<const TexelCodes> codes_; // made when the first cloud is
+    std::shared_ptr<const TexelCodes> codes_; // made when the first skip structure is
     Look look_;
     TransferTable table_; // of no use beside a pre-integrated one
     std::optional<PreintegratedTable> preintegrated_;
     std::optional<ClassifiedTexels> classified_;
-    std::optional<ProximityCloud> cloud_;
-    double cloudBuildMs_ = 0.0;
+    BuiltSkip skip_;
     int texelsGeneration_ = 0;
     int lookGeneration_ = 0;
 };

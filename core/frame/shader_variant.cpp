@@ -18,6 +18,22 @@ constexpr std::array<ClassificationInfo, 3> kClassifications = {{
     {Classification::Preintegrated, "preintegrated", "classify_preintegrated.glsl"},
 }};
 
+/// The files of one form of skipping; what a form does not include is null.
+struct SkipFiles {
+    const char* skip;
+    const char* box;
+    const char* node;
+};
+
+constexpr std::array<SkipFiles, 6> kSkipFiles = {{
+    {"skip_none.glsl", nullptr, nullptr},
+    {"skip_proximity.glsl", nullptr, nullptr},
+    {"skip_within_box.glsl", "box_grown.glsl", nullptr},
+    {"skip_within_box.glsl", "box_octree.glsl", "node_bits.glsl"},
+    {"skip_within_box.glsl", "box_octree.glsl", "node_wide.glsl"},
+    {"skip_within_box.glsl", "box_octree.glsl", "node_range.glsl"},
+}};
+
 const ClassificationInfo& infoOf(Classification classification) {
     const auto index = static_cast<std::size_t>(classification);
     SLABCAST_EXPECTS(index < kClassifications.size(), index);
@@ -30,10 +46,6 @@ const char* name(Classification classification) {
     return infoOf(classification).name;
 }
 
-const char* name(SkipStructure skip) {
-    return skip == SkipStructure::None ? "none" : "proximity";
-}
-
 int unrollLengthFor(int layersPerPlane) {
     const auto fit = std::find_if(kUnrollLengths.begin(), kUnrollLengths.end(),
                                   [=](int length) { return length >= layersPerPlane; });
@@ -42,7 +54,8 @@ int unrollLengthFor(int layersPerPlane) {
 
 std::string name(const ShaderVariant& v) {
     std::string text = name(v.classification);
-    text += v.skip == SkipStructure::None ? "" : std::string("+") + name(v.skip);
+    text += v.skip == SkipForm::None ? "" : std::string("+") + name(v.skip);
+    text += v.topDown ? "+topdown" : "";
     text += v.shaded ? "+shaded" : "";
     text += v.exactField ? "+exact" : "";
     text += v.terminates ? "+terminate" : "";
@@ -57,10 +70,11 @@ std::vector<ShaderVariant> allVariants() {
     std::vector<ShaderVariant> variants;
     for (const int length : lengths) {
         for (const ClassificationInfo& info : kClassifications) {
-            for (int bits = 0; bits < 32; ++bits) {
+            for (std::size_t bits = 0; bits < 32 * kSkipFiles.size(); ++bits) {
                 const auto bit = [bits](int k) { return (bits >> k & 1) != 0; };
                 ShaderVariant v{.classification = info.classification,
-                                .skip = bit(0) ? SkipStructure::Proximity : SkipStructure::None,
+                                .skip = static_cast<SkipForm>(bits >> 5),
+                                .topDown = bit(0),
                                 .shaded = bit(1),
                                 .exactField = bit(2),
                                 .terminates = bit(3),
@@ -87,13 +101,21 @@ Result<ShaderPair> shaderText(const ShaderVariant& v) {
         {"COUNT_FILE", v.counts ? "count_work.glsl" : "count_none.glsl"},
         {"MEDIUM_FILE", v.halfGroups == 0 ? "medium_exact.glsl" : "medium_half.glsl"},
         {"HALF_GROUPS", std::to_string(v.halfGroups)},
-        {"SKIP_FILE", v.skip == SkipStructure::None ? "skip_none.glsl" : "skip_proximity.glsl"},
+        {"WALK_FILE", v.topDown ? "walk_topdown.glsl" : "walk_bidirectional.glsl"},
         {"FIELD_FILE", v.exactField ? "field_exact.glsl" : "field_filtered.glsl"},
         {"SHADE_FILE", v.shaded ? "shade_phong.glsl" : "shade_none.glsl"},
         {"CLASSIFY_FILE", infoOf(v.classification).shaderFile},
         {"TERMINATE_FILE", v.terminates ? "terminate_early.glsl" : "terminate_none.glsl"},
         {"MARCH_FILE", v.unroll == 0 ? "march_loop.glsl" : "march_unrolled.glsl"},
     };
+    const SkipFiles& files = kSkipFiles[static_cast<std::size_t>(v.skip)];
+    const std::pair<const char*, const char*> skipFiles[] = {
+        {"SKIP_FILE", files.skip}, {"BOX_FILE", files.box}, {"NODE_FILE", files.node}};
+    for (const auto& [key, file] : skipFiles) {
+        if (file != nullptr) {
+            defines[key] = file;
+        }
+    }
     if (v.unroll > 0) {
         std::string layers;
         for (int k = 0; k < v.unroll; ++k) {

@@ -6,14 +6,13 @@
 #include <vector>
 
 #include "core/frame/shader_text.h"
+#include "core/skip/skip_structure.h"
 
 namespace slabcast {
 
 enum class Classification : std::uint8_t { Post, Pre, Preintegrated };
-enum class SkipStructure : std::uint8_t { None, Proximity };
 
 const char* name(Classification classification);
-const char* name(SkipStructure skip);
 
 /// Groups of operations that a device may do in 16 bits: a layer's opacity from its depth; the sum
 /// of layers; colours between the table's, and premultiplied; light; extinction between the
@@ -37,7 +36,9 @@ int unrollLengthFor(int layersPerPlane);
 /// |----------------|--------------------------------|------------------------------------------------|
 /// | classification | Post: field + table            | Pre: one RGBA8 texture, colours baked;         |
 /// |                |                                | Preintegrated: field + table of both ends      |
-/// | skip           | None                           | Proximity: one more texture, two tests         |
+/// | skip           | None                           | one more texture, tests per segment and        |
+///                                                   | stretch: Balls, Boxes, or an octree's nodes    |
+/// | topDown        | octrees: on from the last test | from the initial level at every test           |
 /// | shaded         | colour as classified           | 6 more fields per visible sample (Post only)   |
 /// | exactField     | texture unit's filter          | 8 fetches, float32 (not Pre)                   |
 /// | terminates     | every layer                    | leaves when nearly opaque                      |
@@ -47,7 +48,8 @@ int unrollLengthFor(int layersPerPlane);
 // clang-format on
 struct ShaderVariant {
     Classification classification = Classification::Post;
-    SkipStructure skip = SkipStructure::None;
+    SkipForm skip = SkipForm::None;
+    bool topDown = false;
     bool shaded = false;
     bool exactField = false;
     bool terminates = false;
@@ -71,11 +73,14 @@ struct ShaderVariant {
         const bool hasField = classification != Classification::Pre;
         const bool measured =
             halfGroups == 0 || (halfGroups > 0 && halfGroups <= kHalfAll && unroll == 0 && !counts);
-        return listed && measured && (shadable || !shaded) && (hasField || !exactField);
+        const bool walks = skip == SkipForm::Octree || skip == SkipForm::WideOctree ||
+                           skip == SkipForm::RangeOctree;
+        return listed && measured && (walks || !topDown) && (shadable || !shaded) &&
+               (hasField || !exactField);
     }
 };
 
-/// As logs and statistics show it: "post+proximity+shaded+terminate/unroll16".
+/// As logs and statistics show it: "post+balls+shaded+terminate/unroll16".
 std::string name(const ShaderVariant& variant);
 
 /// All valid variants; of those that round to fp16, all groups at once in the loop form. For the

@@ -61,7 +61,7 @@ void StackDrawer::connect(const gl::Program& program) {
     }
     program.use();
     const char* const samplers[] = {"volumeTexels", "transferTable",
-                                    "freeLengths"}; // GpuScene::bind()
+                                    "skipTexels"}; // GpuScene::bind()
     for (int unit = 0; unit < 3; ++unit) {
         gl::Uniform1i(program.uniform(samplers[unit]), unit);
     }

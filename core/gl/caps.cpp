@@ -86,6 +86,11 @@ Result<Caps> queryCaps(const std::vector<std::string>& maskedExtensions) {
         caps->maxTextureSize = limit(GL_MAX_TEXTURE_SIZE);
         caps->maxTexture3DSize = limit(GL_MAX_3D_TEXTURE_SIZE);
         caps->maxUniformBlockSize = limit(GL_MAX_UNIFORM_BLOCK_SIZE);
+        caps->maxComputeInvocations = limit(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS);
+        caps->maxComputeSharedBytes = limit(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE);
+        caps->maxComputeImages = limit(GL_MAX_COMPUTE_IMAGE_UNIFORMS);
+        caps->maxComputeStorageBlocks = limit(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS);
+        caps->maxStorageBlockBytes = limit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
     }
     return caps;
 }

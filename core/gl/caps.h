@@ -19,6 +19,11 @@ struct Caps {
     std::int64_t maxTextureSize = 0;
     std::int64_t maxTexture3DSize = 0;
     std::int64_t maxUniformBlockSize = 0;
+    std::int64_t maxComputeInvocations = 0; // of a workgroup
+    std::int64_t maxComputeSharedBytes = 0;
+    std::int64_t maxComputeImages = 0;
+    std::int64_t maxComputeStorageBlocks = 0;
+    std::int64_t maxStorageBlockBytes = 0;
 
     bool norm16 = false;           // GL_EXT_texture_norm16: R16 exists (says nothing of filtering)
     bool floatLinear = false;      // GL_OES_texture_float_linear: R32F is filtered

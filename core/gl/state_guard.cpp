@@ -34,6 +34,12 @@ GLint integer(GLenum name) {
     return value;
 }
 
+GLint indexed(GLenum name, GLuint index) {
+    GLint value = 0;
+    GetIntegeri_v(name, index, &value);
+    return value;
+}
+
 GLuint asName(GLint value) {
     return static_cast<GLuint>(value);
 }
@@ -100,12 +106,13 @@ void StateGuard::saveBindings() {
     arrayBuffer_ = integer(GL_ARRAY_BUFFER_BINDING);
     unpackBuffer_ = integer(GL_PIXEL_UNPACK_BUFFER_BINDING);
     packBuffer_ = integer(GL_PIXEL_PACK_BUFFER_BINDING);
-    uniformBuffer_ = integer(GL_UNIFORM_BUFFER_BINDING);
-    for (GLuint i = 0; i < uniformBuffers_.size(); ++i) {
-        GetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, i, &uniformBuffers_[i].buffer);
-        GetInteger64i_v(GL_UNIFORM_BUFFER_START, i, &uniformBuffers_[i].offset);
-        GetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, i, &uniformBuffers_[i].size);
-    }
+    uniformBuffers_ =
+        buffersOf(GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE);
+    storageBuffers_ = buffersOf(GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START,
+                                GL_SHADER_STORAGE_BUFFER_SIZE);
+    image_ = {indexed(GL_IMAGE_BINDING_NAME, 0),    indexed(GL_IMAGE_BINDING_LEVEL, 0),
+              indexed(GL_IMAGE_BINDING_LAYERED, 0), indexed(GL_IMAGE_BINDING_LAYER, 0),
+              indexed(GL_IMAGE_BINDING_ACCESS, 0),  indexed(GL_IMAGE_BINDING_FORMAT, 0)};
     activeTexture_ = integer(GL_ACTIVE_TEXTURE);
     for (GLuint i = 0; i < units_.size(); ++i) {
         ActiveTexture(GL_TEXTURE0 + i);
@@ -123,7 +130,11 @@ void StateGuard::restoreBindings() const {
     BindBuffer(GL_ARRAY_BUFFER, asName(arrayBuffer_));
     BindBuffer(GL_PIXEL_UNPACK_BUFFER, asName(unpackBuffer_));
     BindBuffer(GL_PIXEL_PACK_BUFFER, asName(packBuffer_));
-    restoreUniformBuffers();
+    restore(GL_UNIFORM_BUFFER, uniformBuffers_);
+    restore(GL_SHADER_STORAGE_BUFFER, storageBuffers_);
+    BindImageTexture(0, asName(image_.texture), image_.level,
+                     static_cast<GLboolean>(image_.layered), image_.layer, asEnum(image_.access),
+                     asEnum(image_.format));
     for (GLuint i = 0; i < units_.size(); ++i) {
         ActiveTexture(GL_TEXTURE0 + i);
         BindTexture(GL_TEXTURE_2D, asName(units_[i].texture2d));
@@ -134,16 +145,26 @@ void StateGuard::restoreBindings() const {
     ActiveTexture(asEnum(activeTexture_));
 }
 
-void StateGuard::restoreUniformBuffers() const {
-    for (GLuint i = 0; i < uniformBuffers_.size(); ++i) {
-        const BufferRange& range = uniformBuffers_[i];
+StateGuard::Buffers StateGuard::buffersOf(GLenum binding, GLenum start, GLenum size) {
+    Buffers buffers{integer(binding), {}};
+    for (GLuint i = 0; i < buffers.indexed.size(); ++i) {
+        GetIntegeri_v(binding, i, &buffers.indexed[i].buffer);
+        GetInteger64i_v(start, i, &buffers.indexed[i].offset);
+        GetInteger64i_v(size, i, &buffers.indexed[i].size);
+    }
+    return buffers;
+}
+
+void StateGuard::restore(GLenum target, const Buffers& buffers) {
+    for (GLuint i = 0; i < buffers.indexed.size(); ++i) {
+        const BufferRange& range = buffers.indexed[i];
         if (range.size == 0) { // bound as a whole, or not bound
-            BindBufferBase(GL_UNIFORM_BUFFER, i, asName(range.buffer));
+            BindBufferBase(target, i, asName(range.buffer));
         } else {
-            BindBufferRange(GL_UNIFORM_BUFFER, i, asName(range.buffer), range.offset, range.size);
+            BindBufferRange(target, i, asName(range.buffer), range.offset, range.size);
         }
     }
-    BindBuffer(GL_UNIFORM_BUFFER, asName(uniformBuffer_)); // last: indexed binds move it too
+    BindBuffer(target, asName(buffers.generic)); // last: indexed binds move it too
 }
 
 } // namespace slabcast::gl

@@ -13,13 +13,13 @@ namespace slabcast::gl {
 /// - whether blend, cull face, depth test, dither, rasterizer discard, sample alpha to coverage,
 /// sample coverage, sample mask, scissor and stencil test are enabled;
 /// - array, pixel unpack and pixel pack buffer, uniform buffer (generic and indexed 0 and 1, with
-/// their ranges);
+/// their ranges), shader storage buffer likewise; image unit 0;
 /// - pixel pack and unpack alignment, row length, image height and skips;
 /// - active unit; on units 0 to 7 the 2D, 2D array and 3D texture and the sampler.
 /// Makes unit 0 the active one: what binds a texture without choosing a unit binds it there.
 /// Blending and the colour mask are saved of draw buffer 0 and restored to all draw buffers: a host
 /// that sets them one by one (Enablei, ColorMaski, BlendFunci, BlendEquationi) must do so again.
-/// Cost: about 90 glGet calls, no wait on most drivers. Tested by: state_guard_gl_test.cpp
+/// Cost: about 110 glGet calls, no wait on most drivers. Tested by: state_guard_gl_test.cpp
 class StateGuard {
 public:
     StateGuard();
@@ -32,7 +32,7 @@ public:
     static void usePlainPixelTransfer();
 
     static constexpr int kUnits = 8;
-    static constexpr int kUniformBuffers = 2;
+    static constexpr int kIndexedBuffers = 2; // of each kind
     static constexpr int kSwitches = 10;
     static constexpr int kPixelStores = 10;
 
@@ -48,15 +48,25 @@ private:
         GLint64 offset = 0;
         GLint64 size = 0;
     };
+    struct Buffers {
+        GLint generic = 0;
+        std::array<BufferRange, kIndexedBuffers> indexed{};
+    };
+    struct ImageUnit {
+        GLint texture = 0;
+        GLint level = 0, layered = GL_FALSE, layer = 0;
+        GLint access = GL_READ_ONLY, format = GL_R32UI;
+    };
     struct Blend {
         GLint sourceRgb = GL_ONE, sourceAlpha = GL_ONE;
         GLint destinationRgb = GL_ZERO, destinationAlpha = GL_ZERO;
         GLint equationRgb = GL_FUNC_ADD, equationAlpha = GL_FUNC_ADD;
     };
 
+    static Buffers buffersOf(GLenum binding, GLenum start, GLenum size);
+    static void restore(GLenum target, const Buffers& buffers);
     void saveBindings();
     void restoreBindings() const;
-    void restoreUniformBuffers() const;
 
     GLint program_ = 0;
     GLint vertexArray_ = 0;
@@ -65,7 +75,6 @@ private:
     GLint arrayBuffer_ = 0;
     GLint unpackBuffer_ = 0;
     GLint packBuffer_ = 0;
-    GLint uniformBuffer_ = 0;
     GLint activeTexture_ = GL_TEXTURE0;
     std::array<GLint, 4> viewport_{};
     std::array<GLint, 4> scissor_{};
@@ -75,7 +84,9 @@ private:
     Blend blend_;
     std::array<bool, kSwitches> switches_{};
     std::array<GLint, kPixelStores> pixelStores_{};
-    std::array<BufferRange, kUniformBuffers> uniformBuffers_{};
+    Buffers uniformBuffers_;
+    Buffers storageBuffers_;
+    ImageUnit image_;
     std::array<Unit, kUnits> units_{};
 };
 

@@ -188,14 +188,14 @@ bool transformAxis(std::vector<std::uint32_t>& squared, const AxisLines& axis, s
 
 /// Squared gaps to bytes: 0 where occupied, else one more than the whole quanta of the length.
 bool writeFreeLengths(const Occupancy& occupancy, const std::vector<std::uint32_t>& squared,
-                      double shortest, ProximityCloud& cloud, const CancelToken* cancel) {
+                      double shortest, FreeLengths& cloud, const CancelToken* cancel) {
     const double quantaPerUnit = shortest / double(kUnitsPerQuantum);
     return parallelFor(
         std::int64_t(squared.size()), 65536,
         [&](std::int64_t begin, std::int64_t end) {
             for (std::int64_t i = begin; i < end; ++i) {
                 const int whole = int(std::sqrt(double(squared[i])) * quantaPerUnit);
-                cloud.freeLengths[i] = occupancy.occupied[i] != 0 ? 0 : std::uint8_t(1 + whole);
+                cloud.counts[i] = occupancy.occupied[i] != 0 ? 0 : std::uint8_t(1 + whole);
             }
         },
         cancel);
@@ -203,9 +203,9 @@ bool writeFreeLengths(const Occupancy& occupancy, const std::vector<std::uint32_
 
 } // namespace
 
-Result<ProximityCloud> buildProximityCloud(const CellVisibility& visibility,
-                                           const VolumeGeometry& geometry, int blockEdgeVoxels,
-                                           const CancelToken* cancel) {
+Result<FreeLengths> buildProximityCloud(const CellVisibility& visibility,
+                                        const VolumeGeometry& geometry, int blockEdgeVoxels,
+                                        const CancelToken* cancel) {
     constexpr std::array kEdges{1, 2, 4, 8};
     if (std::find(kEdges.begin(), kEdges.end(), blockEdgeVoxels) == kEdges.end()) {
         return fail(ErrorCode::InvalidArgument, "block edge " + std::to_string(blockEdgeVoxels) +
@@ -217,10 +217,10 @@ Result<ProximityCloud> buildProximityCloud(const CellVisibility& visibility,
         return tl::unexpected(occupancy.error());
     }
     const std::vector<std::uint8_t>& occupied = occupancy->occupied;
-    ProximityCloud cloud{.blocks = occupancy->blocks,
-                         .blockEdgeVoxels = blockEdgeVoxels,
-                         .quantumMm = geometry.smallestVoxelEdgeMm(),
-                         .freeLengths = std::vector<std::uint8_t>(occupied.size(), 255)};
+    FreeLengths cloud{.blocks = occupancy->blocks,
+                      .blockEdgeVoxels = blockEdgeVoxels,
+                      .quantumMm = geometry.smallestVoxelEdgeMm(),
+                      .counts = std::vector<std::uint8_t>(occupied.size(), 255)};
     cloud.occupiedBlocks = std::count_if(occupied.begin(), occupied.end(),
                                          [](std::uint8_t mark) { return mark != 0; });
     if (cloud.occupiedBlocks == 0) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -52,16 +53,9 @@ struct HalfCoder {
 
 /// 65,536 even bins from the smallest float to the largest.
 struct FloatCoder {
-    explicit FloatCoder(const Texels& texels) {
-        const float* begin = texelData(texels, FloatCodec{});
-        const auto [least, most] =
-            std::minmax_element(begin, begin + texels.data.size() / sizeof(float));
-        min = *least;
-        max = *most;
-        binWidth = (double{max} - double{min}) / double{kCodes};
-        // What the float64 arithmetic of `code` and of the bounds below may be off by.
-        slack = 0x1p-49 * std::max(std::abs(double{min}), std::abs(double{max}));
-    }
+    FloatCoder(float least, float most)
+        : min(least), max(most), binWidth((double{max} - double{min}) / double{kCodes}),
+          slack(0x1p-49 * std::max(std::abs(double{min}), std::abs(double{max}))) {}
 
     static constexpr std::size_t kCount = kCodes;
 
@@ -79,10 +73,10 @@ struct FloatCoder {
     }
 
     static constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    float min = 0.0F;
-    float max = 0.0F;
-    double binWidth = 0.0;
-    double slack = 0.0;
+    float min;
+    float max;
+    double binWidth;
+    double slack; // what the float64 arithmetic of `code`, `low` and `high` may be off by
 };
 
 template <class Codec>
@@ -92,8 +86,22 @@ IntegerCoder<Codec> coderFor(const Texels& texels, Codec /*codec*/) {
 HalfCoder coderFor(const Texels& texels, HalfCodec /*codec*/) {
     return HalfCoder(texels);
 }
-FloatCoder coderFor(const Texels& texels, FloatCodec /*codec*/) {
-    return FloatCoder(texels);
+FloatCoder coderFor(const Texels& texels, FloatCodec codec) {
+    const float* begin = texelData(texels, codec);
+    const auto [least, most] =
+        std::minmax_element(begin, begin + texels.data.size() / sizeof(float));
+    return {*least, *most};
+}
+
+/// Floats as integers in the same order, and back.
+std::int64_t orderOf(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    const std::int64_t magnitude = bits & 0x7fffffffU;
+    return (bits >> 31) != 0 ? -magnitude : magnitude;
+}
+float floatAt(std::int64_t order) {
+    const auto magnitude = std::bit_cast<float>(static_cast<std::uint32_t>(std::abs(order)));
+    return order < 0 ? -magnitude : magnitude;
 }
 
 } // namespace
@@ -117,6 +125,27 @@ TexelCodes encodeCodes(const Texels& texels) {
         }
         return result;
     });
+}
+
+std::vector<float> codeStarts(const TexelCodes& codes) {
+    const FloatCoder coder(codes.lowSampled.front(), codes.highSampled.back());
+    std::vector<float> starts(codes.lowSampled.size(), FloatCoder::kInfinity);
+    parallelFor(static_cast<std::int64_t>(starts.size()), 4096,
+                [&](std::int64_t begin, std::int64_t end) {
+                    for (std::int64_t code = begin; code < end; ++code) {
+                        std::int64_t least = orderOf(coder.min);
+                        std::int64_t most = orderOf(coder.max) + 1; // no texel
+                        while (least < most) {
+                            const std::int64_t middle = least + (most - least) / 2;
+                            const bool enough = coder.code(floatAt(middle)) >= code;
+                            (enough ? most : least) = enough ? middle : middle + 1;
+                        }
+                        if (least <= orderOf(coder.max)) {
+                            starts[static_cast<std::size_t>(code)] = floatAt(least);
+                        }
+                    }
+                });
+    return starts;
 }
 
 } // namespace slabcast

@@ -56,4 +56,8 @@ struct TexelCodes {
 
 TexelCodes encodeCodes(const Texels& texels);
 
+/// Of binned floats, per code: the least float that has this code or a greater one, infinity where
+/// none has. Cost: O(codes), all cores. Tested by: gpu_builder_gl_test.cpp
+std::vector<float> codeStarts(const TexelCodes& codes);
+
 } // namespace slabcast

@@ -12,13 +12,7 @@ namespace slabcast {
 
 namespace {
 
-struct Layout {
-    GLenum internalFormat;
-    GLenum format;
-    GLenum type;
-    GLint filter;
-    std::int64_t bytesPerTexel;
-};
+using Layout = TexelLayout;
 
 // In the order of TexelFormat.
 constexpr Layout kTexelLayouts[] = {
@@ -109,8 +103,9 @@ Result<void> takeUploadError(const std::string& what) {
     return fail(ErrorCode::Internal, "uploading " + what + " raised " + gl::errorName(error));
 }
 
-void setSampling(GLenum target, GLint filter) {
-    gl::TexParameteri(target, GL_TEXTURE_MIN_FILTER, filter);
+void setSampling(GLenum target, GLint filter, bool mipmapped = false) {
+    gl::TexParameteri(target, GL_TEXTURE_MIN_FILTER,
+                      mipmapped ? GL_NEAREST_MIPMAP_NEAREST : filter);
     gl::TexParameteri(target, GL_TEXTURE_MAG_FILTER, filter);
     gl::TexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     gl::TexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
@@ -118,14 +113,15 @@ void setSampling(GLenum target, GLint filter) {
 }
 
 /// In slabs of 16 MiB, so that the driver's staging copy stays small beside the volume.
-void uploadSlabs(const Layout& layout, glm::ivec3 dims, const std::byte* data) {
+void uploadSlabs(const Layout& layout, int level, glm::ivec3 dims, const std::byte* data) {
     constexpr std::int64_t kSlabBytes = 16 << 20;
     const std::int64_t sliceBytes = std::int64_t{dims.x} * dims.y * layout.bytesPerTexel;
     const int depth =
         static_cast<int>(std::clamp<std::int64_t>(kSlabBytes / sliceBytes, 1, dims.z));
     for (int z = 0; z < dims.z; z += depth) {
-        gl::TexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, z, dims.x, dims.y, std::min(depth, dims.z - z),
-                          layout.format, layout.type, data + z * sliceBytes);
+        gl::TexSubImage3D(GL_TEXTURE_3D, level, 0, 0, z, dims.x, dims.y,
+                          std::min(depth, dims.z - z), layout.format, layout.type,
+                          data + z * sliceBytes);
     }
 }
 
@@ -136,22 +132,8 @@ Result<gl::Texture> upload3d(const char* label, const Layout& layout, glm::ivec3
     if (!fits) {
         return tl::unexpected(fits.error());
     }
-    const gl::StateGuard guard;
-    gl::StateGuard::usePlainPixelTransfer();
-    gl::takeError(); // what came before is not ours
-    gl::Texture texture = gl::Texture::make(label, GL_TEXTURE_3D);
-    gl::BindTexture(GL_TEXTURE_3D, texture.id());
-    gl::TexStorage3D(GL_TEXTURE_3D, 1, layout.internalFormat, dims.x, dims.y, dims.z);
-    const std::string what = std::string(label) + " (" + text(dims) + ")";
-    if (const auto allocated = takeUploadError(what); !allocated) {
-        return tl::unexpected(allocated.error());
-    }
-    setSampling(GL_TEXTURE_3D, layout.filter);
-    uploadSlabs(layout, dims, static_cast<const std::byte*>(data));
-    if (const auto uploaded = takeUploadError(what); !uploaded) {
-        return tl::unexpected(uploaded.error());
-    }
-    return texture;
+    const void* levels[] = {data};
+    return uploadLevels3d(label, layout, dims, levels);
 }
 
 /// A transfer table.
@@ -180,6 +162,39 @@ Result<gl::Texture> uploadTable2d(glm::i64vec2 size, GLenum format, GLint filter
 }
 
 } // namespace
+
+Result<gl::Texture> allocate3d(const char* label, const TexelLayout& layout, glm::ivec3 dims,
+                               int levels) {
+    gl::takeError(); // what came before is not ours
+    gl::Texture texture = gl::Texture::make(label, GL_TEXTURE_3D);
+    gl::BindTexture(GL_TEXTURE_3D, texture.id());
+    gl::TexStorage3D(GL_TEXTURE_3D, levels, layout.internalFormat, dims.x, dims.y, dims.z);
+    if (const auto allocated = takeUploadError(std::string(label) + " (" + text(dims) + ")");
+        !allocated) {
+        return tl::unexpected(allocated.error());
+    }
+    setSampling(GL_TEXTURE_3D, layout.filter, levels > 1);
+    return texture;
+}
+
+Result<gl::Texture> uploadLevels3d(const char* label, const TexelLayout& layout, glm::ivec3 dims,
+                                   std::span<const void* const> levels) {
+    const gl::StateGuard guard;
+    gl::StateGuard::usePlainPixelTransfer();
+    Result<gl::Texture> texture = allocate3d(label, layout, dims, static_cast<int>(levels.size()));
+    if (!texture) {
+        return texture;
+    }
+    for (int level = 0; level < static_cast<int>(levels.size()); ++level) {
+        uploadSlabs(layout, level, glm::max(dims >> level, 1),
+                    static_cast<const std::byte*>(levels[level]));
+    }
+    if (const auto uploaded = takeUploadError(std::string(label) + " (" + text(dims) + ")");
+        !uploaded) {
+        return tl::unexpected(uploaded.error());
+    }
+    return texture;
+}
 
 std::int64_t uploadedBytesPerTexel(TexelFormat format, bool preclassified) {
     return (preclassified ? kClassifiedLayout : layoutOf(format)).bytesPerTexel;

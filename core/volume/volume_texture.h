@@ -47,6 +47,24 @@ Result<void> checkFits(glm::ivec3 dims, std::int64_t bytesPerTexel, const gl::Ca
 /// that wants to hear of its own calls glGetError first. Fail: VolumeTooLarge, DeviceOutOfMemory,
 /// Internal (another GL error). Tested by: texel_format_gl_test.cpp
 
+/// How texels lie in a texture and in memory.
+struct TexelLayout {
+    GLenum internalFormat;
+    GLenum format;
+    GLenum type;
+    GLint filter;
+    std::int64_t bytesPerTexel;
+};
+
+/// A 3D texture of so many levels, bound and without content. Contract: it is within the device's
+/// limit, and several levels are not filtered.
+Result<gl::Texture> allocate3d(const char* label, const TexelLayout& layout, glm::ivec3 dims,
+                               int levels);
+
+/// The same with what its levels hold, tightly packed.
+Result<gl::Texture> uploadLevels3d(const char* label, const TexelLayout& layout, glm::ivec3 dims,
+                                   std::span<const void* const> levels);
+
 /// Scalars: R8, R16 and R16F filtered; Rg8Exact (r high byte, g low byte) and R32fExact for
 /// texelFetch.
 Result<gl::Texture> uploadTexels(const Texels& texels, const gl::Caps& caps);

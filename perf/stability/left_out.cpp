@@ -27,7 +27,8 @@ Settings settingsOfAll(const FrugalScene& setup) {
 
 /// The same frame with everything in, needed or not.
 FramePlan withAll(FramePlan plan) {
-    plan.variant.skip = SkipStructure::Proximity;
+    plan.skip = SkipStructure::Proximity;
+    plan.variant.skip = SkipForm::Balls;
     plan.variant.shaded = true;
     plan.variant.terminates = true;
     plan.terminationAlpha = *Settings{}.termination;
@@ -127,13 +128,13 @@ void recordResources(Bench& bench, const FrugalScene& setup, const Evidence& evi
     bench.record(std::move(text));
 
     const bool nothing = evidence.plan.drawsNothing;
-    const bool skips = evidence.plan.variant.skip != SkipStructure::None;
+    const bool skips = evidence.plan.skip != SkipStructure::None;
     Case memory = caseOf(setup, "memory", "bytes of volume and skip structure",
                          "one texel per voxel; one byte per block where space is skipped; nothing "
                          "where nothing is drawn");
     memory.bound = nothing ? 0.0
                            : double(evidence.scene.texels().data.size()) +
-                                 (skips ? double(evidence.scene.cloud()->freeLengths.size()) : 0.0);
+                                 (skips ? double(gpuBytes(evidence.scene.skip())) : 0.0);
     memory.measured = double(evidence.memory.volumeBytes + evidence.memory.skipBytes);
     bench.record(std::move(memory));
 }

@@ -55,7 +55,7 @@ double zero(const Evidence& /*evidence*/) {
 
 /// Samples whose block may hold something visible, of all rays.
 double samplesInOccupiedBlocks(const Evidence& e) {
-    const ProximityCloud& cloud = *e.scene.cloud();
+    const FreeLengths& cloud = *e.scene.skip().lengths;
     const Viewport viewport{0, 0, e.size.x, e.size.y};
     const RayFrame frame = makeRayFrame(e.view, viewport, e.scene.geometry(), e.plan.lattice);
     const glm::dvec3 blocksPerUvw =
@@ -70,7 +70,7 @@ double samplesInOccupiedBlocks(const Evidence& e) {
                                                 glm::ivec3(0), cloud.blocks - 1);
             const std::int64_t index =
                 (std::int64_t(block.z) * cloud.blocks.y + block.y) * cloud.blocks.x + block.x;
-            count += cloud.freeLengths[std::size_t(index)] == 0 ? 1 : 0;
+            count += cloud.counts[std::size_t(index)] == 0 ? 1 : 0;
         }
     }
     return double(count);
@@ -109,7 +109,7 @@ double fragmentsInFront(const Evidence& e) {
 }
 
 const std::vector<std::string> kFieldAndTable = {"transferTable", "volumeTexels"};
-const std::vector<std::string> kAll = {"freeLengths", "transferTable", "volumeTexels"};
+const std::vector<std::string> kAll = {"skipTexels", "transferTable", "volumeTexels"};
 
 constexpr WorkClaim kOneFetch{
     "volume fetches per layer beyond the sample's own",
@@ -218,7 +218,7 @@ int textOutOfPlace(const ShaderVariant& variant) {
     const struct {
         const char* text;
         bool needed;
-    } entries[] = {{"freeLengths", variant.skip == SkipStructure::Proximity},
+    } entries[] = {{"skipTexels", variant.skip != SkipForm::None},
                    {"gradientRow[0].xyz", variant.shaded},
                    {"texelFetch(volumeTexels", variant.exactField},
                    {"alpha > viewport.w", variant.terminates},

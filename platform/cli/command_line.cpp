@@ -71,9 +71,9 @@ std::string renderCommandLine(const SceneOptions& scene, const Sampling& samplin
         .add("--jitter", sampling.jitter ? "on" : "off")
         .addIf(plan.lattice.kind != usual.settings.lattice, "--lattice", name(plan.lattice.kind))
         .add("--form", plan.variant.unroll > 0 ? "unrolled" : "loop")
-        .add("--skip", name(plan.variant.skip))
-        .addIf(scene.skipBlockEdge != usual.skipBlockEdge, "--skip-block",
-               fmt::format("{}", scene.skipBlockEdge))
+        .add("--skip", name(plan.skip))
+        .addIf(scene.skip.blockEdgeVoxels != usual.skip.blockEdgeVoxels, "--skip-block",
+               fmt::format("{}", scene.skip.blockEdgeVoxels))
         .addIf(!plan.tighten, "--tighten", "off")
         .text();
 }

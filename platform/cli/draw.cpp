@@ -65,10 +65,11 @@ Result<void> Stage::setLook(TransferFunction tf, Classification classification) 
     // Towards the eye: a baked head light stands where the eye is at the first frame.
     const glm::dmat3 rotation(viewFromModel(options_.camera, scene().geometry().boundingSphere()));
     look.bakedLightDirection = glm::transpose(rotation) * glm::dvec3(0.0, 0.0, 1.0);
-    const bool needsCloud =
-        s.tighten || s.skip.value_or(SkipStructure::Proximity) == SkipStructure::Proximity;
-    const SkipOptions skip{needsCloud ? SkipStructure::Proximity : SkipStructure::None,
-                           options_.skipBlockEdge};
+    SkipOptions skip = options_.skip;
+    skip.structure = s.skip.value_or(skip.structure);
+    if (s.tighten && skip.structure == SkipStructure::None) {
+        skip.structure = SkipStructure::Blocks; // for the planes alone
+    }
     const int maxTable =
         static_cast<int>(std::min<std::int64_t>(4096, session_.caps.maxTextureSize));
     return loaded_.scene.setLook(look, skip, maxTable);

@@ -77,7 +77,7 @@ json rowsKey(const Stage& stage, const ErrorOptions& o) {
                 {"lattice", name(s.lattice)},
                 {"form", wordFor(formWords(), s.form)},
                 {"skip", s.skip ? name(*s.skip) : "auto"},
-                {"skip block", o.skipBlockEdge},
+                {"skip block", o.skip.blockEdgeVoxels},
                 {"tighten", s.tighten},
                 {"quick", o.quick},
                 {"frames", o.frames}});
@@ -140,8 +140,7 @@ json frontByFetches(const json& rows) {
 bool isUsual(const ErrorOptions& o) {
     const auto othersOf = [](const SceneOptions& scene) {
         const Settings& s = scene.settings;
-        return std::tuple(s.skip, s.tighten, s.lattice, s.form, scene.skipBlockEdge,
-                          scene.input.exact);
+        return std::make_tuple(s.skip, s.tighten, s.lattice, s.form, scene.skip, scene.input.exact);
     };
     return othersOf(o) == othersOf(SceneOptions{});
 }

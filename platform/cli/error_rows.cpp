@@ -27,7 +27,7 @@ const char* ratioName(const FramePlan& plan) {
 json planJson(const FramePlan& plan) {
     json all = toJson(plan);
     all.erase("reasons");
-    all["skip"] = name(plan.variant.skip);
+    all["skip"] = name(plan.skip);
     return all;
 }
 

@@ -22,7 +22,7 @@ struct SceneOptions {
     double fovDegrees = 40.0;
     std::optional<double> stereoIpdMm;
     Settings settings;
-    int skipBlockEdge = 4;
+    SkipOptions skip; // its structure is settings.skip where that is set
     std::optional<glm::dvec3> background = glm::dvec3(0.0); // sRGB-encoded; none: transparent
 };
 

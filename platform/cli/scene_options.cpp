@@ -57,6 +57,22 @@ std::optional<std::optional<glm::dvec3>> parseBackground(const std::string& word
     return glm::dvec3(rgb >> 16 & 255U, rgb >> 8 & 255U, rgb & 255U) / 255.0;
 }
 
+std::optional<std::optional<std::array<double, 2>>> parseValueRange(const std::string& word) {
+    const auto parts = split(word, ',');
+    const auto low = parts.size() == 2 ? parseReal(parts[0]) : std::nullopt;
+    const auto high = parts.size() == 2 ? parseReal(parts[1]) : std::nullopt;
+    return low && high ? std::optional(std::optional(std::array{*low, *high})) : std::nullopt;
+}
+
+/// auto, and every structure by its name.
+Choices<std::optional<SkipStructure>> skipWords() {
+    Choices<std::optional<SkipStructure>> words{{"auto", std::nullopt}};
+    for (const SkipStructureInfo& info : skipStructures()) {
+        words.emplace_back(info.name, info.structure);
+    }
+    return words;
+}
+
 std::string phantomNames() {
     std::vector<std::string> names;
     for (const PhantomInfo& phantom : phantomList()) {
@@ -211,14 +227,32 @@ void bindStack(CLI::App& command, SceneOptions& o) {
     addChoice(command, "--form", s.form, formWords(),
               "segments written out layer by layer, or as a loop; auto goes by device and length")
         ->group(group);
-    addChoice(command, "--skip", s.skip,
-              {{"auto", std::nullopt},
-               {"none", SkipStructure::None},
-               {"proximity", SkipStructure::Proximity}},
+    addChoice(command, "--skip", s.skip, skipWords(),
               "how empty space is skipped; never changes the picture; auto goes by what is visible")
         ->group(group);
-    addChoice(command, "--skip-block", o.skipBlockEdge, {{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}},
-              "edge of the skip structure's blocks in voxels")
+    addNumber(command, "--skip-block", o.skip.blockEdgeVoxels, 1, 64,
+              "edge in voxels of the skip structure's blocks, or of an octree's leaves")
+        ->group(group);
+    addNumber(command, "--skip-bits", o.skip.bits, 8, 128,
+              "bits per node of a bitfield octree: 8, 16, 32, 64 or 128")
+        ->group(group);
+    addNumber(command, "--partitions", o.skip.partitions, 16, 256,
+              "ranges of values that partitioned maps tell apart: 16, 32, 64, 128 or 256")
+        ->group(group);
+    addChoice(command, "--separate-minimum", o.skip.separateMinimum, onOffWords(),
+              "whether the least value has a bin or partition of its own")
+        ->group(group);
+    addParsed<std::optional<std::array<double, 2>>>(
+        command, "--value-range", o.skip.valueRange, parseValueRange, "two values, LOW,HIGH",
+        "values between which bins and partitions are laid; all of the data's unless given")
+        ->group(group);
+    addNumber(command, "--initial-level", o.skip.initialLevel, 0, 12,
+              "levels from an octree's root that are left out")
+        ->group(group);
+    addChoice(
+        command, "--traversal", o.skip.traversal,
+        {{"bidirectional", Traversal::Bidirectional}, {"top-down", Traversal::TopDown}},
+        "whether an octree's tests go on at the level of the last, or begin at the initial one")
         ->group(group);
     addChoice(command, "--tighten", s.tighten, {{"on", true}, {"off", false}},
               "planes as rectangles around what is visible in their slab, or the sphere's 10-gons")

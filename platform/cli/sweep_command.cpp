@@ -22,15 +22,15 @@ struct Series {
     bool tighten;
 };
 
-std::vector<Series> seriesOf(const Settings& settings) {
+std::vector<Series> seriesOf(const Stage& stage, const Settings& settings) {
+    const bool skips = settings.skip != SkipStructure::None;
+    const SkipStructure built = stage.scene().skip().options.structure;
     std::vector<Series> series{{SkipStructure::None, false}};
-    if (settings.skip != SkipStructure::None) {
-        series.push_back({SkipStructure::Proximity, false});
+    if (skips) {
+        series.push_back({built, false});
     }
     if (settings.tighten) {
-        series.push_back(
-            {settings.skip == SkipStructure::None ? SkipStructure::None : SkipStructure::Proximity,
-             true});
+        series.push_back({skips ? built : SkipStructure::None, true});
     }
     return series;
 }
@@ -51,9 +51,10 @@ std::vector<int> layerCounts(const SweepOptions& options, int total) {
 
 /// The forms that a row is measured in: the settings' one, or on `auto` what the plan takes for the
 /// length.
-std::vector<Settings> rowSettings(const SweepOptions& options, int total) {
+std::vector<Settings> rowSettings(const Stage& stage, const SweepOptions& options) {
+    const int total = totalLayers(options.settings, stage.scene().facts());
     std::vector<Settings> rows;
-    for (const Series& series : seriesOf(options.settings)) {
+    for (const Series& series : seriesOf(stage, options.settings)) {
         for (const int count : layerCounts(options, total)) {
             Settings row = options.settings;
             row.layersPerPlane = count;
@@ -112,7 +113,7 @@ Result<json> measureRow(Stage& stage, const SweepOptions& options, const Setting
                 {"planes", plan->planes},
                 {"layersPerPlane", plan->layersPerPlane},
                 {"form", plan->variant.unroll > 0 ? "unrolled" : "loop"},
-                {"skip", name(plan->variant.skip)},
+                {"skip", name(plan->skip)},
                 {"tighten", plan->tighten},
                 {"frameMs", toJson(summary)},
                 {"counters", toJson(stage.countWork(*plan))},
@@ -147,18 +148,18 @@ json conditions(const Stage& stage, const SweepOptions& o) {
 /// The part of the report that is the same for all rows; taken last, when memory has seen its peak.
 json header(Stage& stage, const SweepOptions& options, const std::string& command) {
     const GpuMemory gpu = stage.renderer().gpuMemory();
-    const ProximityCloud* cloud = stage.scene().cloud();
+    const BuiltSkip& skip = stage.scene().skip();
     json result = reportHeader(stage, command);
     result["conditions"] = conditions(stage, options);
     result["memory"] = {{"peakHostBytes", peakHostBytes()},
                         {"volumeBytes", stage.info().bytes},
                         {"textureBytes", gpu.volumeBytes},
-                        {"skipBytes", cloud != nullptr ? cloud->freeLengths.size() : 0}};
-    if (cloud != nullptr) {
-        result["skipBuild"] = {{"structure", "proximity"},
-                               {"blockEdge", cloud->blockEdgeVoxels},
-                               {"ms", stage.scene().cloudBuildMs()},
-                               {"occupiedFraction", stage.scene().facts().occupiedFraction}};
+                        {"skipBytes", gpuBytes(skip)}};
+    if (skip.exists()) {
+        result["skipBuild"] = {{"structure", name(skip.options.structure)},
+                               {"blockEdge", skip.options.blockEdgeVoxels},
+                               {"ms", skip.buildMs},
+                               {"occupiedFraction", skip.occupiedFraction}};
     }
     return result;
 }
@@ -189,8 +190,7 @@ Result<void> sweepCommand(const SweepOptions& options, const std::string& comman
     if (Result<void> made = makeReportFolder(folder / "thumbnails"); !made) {
         return made;
     }
-    const std::vector<Settings> plans =
-        rowSettings(options, totalLayers(options.settings, stage->scene().facts()));
+    const std::vector<Settings> plans = rowSettings(*stage, options);
     json rows = json::array();
     Progress progress;
     for (const Settings& settings : plans) {

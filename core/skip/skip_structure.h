@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/base/error.h"
+
+namespace slabcast {
+
+/// The ways to skip empty space.
+enum class SkipStructure : std::uint8_t {
+    None,
+    Blocks,         // free or not, block by block
+    Proximity,      // Euclidean free lengths, mm
+    Chebyshev,      // max-norm free lengths, blocks
+    Partitioned,    // Chebyshev maps of value ranges, merged for a TF
+    BooleanOctree,  // occupied or not
+    MinMaxOctree,   // range of values
+    BitfieldOctree, // which bins of values occur
+};
+
+/// How a fragment shader reads a structure.
+enum class SkipForm : std::uint8_t {
+    None,
+    Balls,       // free lengths in mm around a block: proximity
+    Boxes,       // free lengths in blocks around a block: blocks, chebyshev, partitioned
+    Octree,      // nodes of up to 32 bits, free without a bit in common with one word
+    WideOctree,  // the same with nodes of up to 128 bits
+    RangeOctree, // nodes of two codes, free outside one range
+};
+
+struct SkipStructureInfo {
+    SkipStructure structure;
+    const char* name;
+    bool dependsOnTransfer;     // built anew, or merged, when the TF changes
+    std::span<const int> edges; // of a block or leaf, voxels, that are offered
+};
+
+/// One entry per structure, in the order of the enumeration.
+std::span<const SkipStructureInfo> skipStructures();
+const SkipStructureInfo& infoOf(SkipStructure structure);
+const char* name(SkipStructure structure);
+const char* name(SkipForm form);
+bool isOctree(SkipStructure structure);
+
+enum class Traversal : std::uint8_t {
+    Bidirectional, // goes on at the level of the last test, up or down
+    TopDown,       // begins every test at the initial level
+};
+
+const char* name(Traversal traversal);
+
+/// What a user may ask of a structure; what does not belong to it is not looked at.
+struct SkipOptions {
+    SkipStructure structure = SkipStructure::Proximity;
+    int blockEdgeVoxels = 4;      // of a block, or of an octree's leaf
+    int bits = 32;                // per node of a bitfield octree: 8, 16, 32, 64 or 128
+    int partitions = 16;          // 16, 32, 64, 128 or 256
+    bool separateMinimum = false; // the least value has a bin or partition of its own
+    /// Data values between which bins and partitions are laid; what lies beyond falls into the
+    /// ones at the ends. None: all of the data.
+    std::optional<std::array<double, 2>> valueRange;
+    int initialLevel = 2; // levels of an octree from the root that are left out
+    Traversal traversal = Traversal::Bidirectional;
+    std::int64_t memoryBudgetBytes = std::int64_t(256) << 20; // of partitioned maps
+
+    bool operator==(const SkipOptions&) const = default;
+};
+
+/// Fails: InvalidArgument, naming what is offered. Tested by: skip_structure_test.cpp
+Result<void> check(const SkipOptions& options);
+
+/// Contract: the options are valid.
+SkipForm formOf(const SkipOptions& options);
+
+} // namespace slabcast
