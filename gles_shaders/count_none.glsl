@@ -1,6 +1,4 @@
-// Draws: the segment's premultiplied colour, to be blended over what is there.
-layout(location = 0) out vec4 colour;
-
+// Draws: the segment's premultiplied colour.
 void countLayer() {}
 void countFetches(int n) {}
 void countSkipFetch() {}

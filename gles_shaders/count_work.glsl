@@ -1,7 +1,4 @@
-// Counts: the work of the same walk instead of its colour, summed by additive blending into two
-// float32 targets.
-layout(location = 0) out vec4 work0; // fragments, layers in the segment, evaluated, skip fetches
-layout(location = 1) out vec4 work1; // volume fetches, stretches, those of them not free
+// Counts: the work of the same walk instead of its colour.
 int countedLayers = 0;
 int countedFetches = 0;
 int countedSkipFetches = 0;

@@ -25,17 +25,18 @@ layout(std140) uniform FrameBlock {
     vec4 gradientRow[3]; // rows: patient-space gradient from differences per voxel; w of 0: floor
     vec4 patientRow[3];  // rows: patient-space direction from one in uvw
     vec4 material;       // ambient, diffuse, specular, shininess
-    ivec4 counts;        // first plane, planes drawn, layers per plane, planes per outline
-    ivec4 skipBlocks;    // xyz: number of blocks or leaves - 1
+    ivec4 counts;        // first plane, layers per plane, planes per outline
+    ivec4 skipBlocks;    // xyz: number of blocks or leaves - 1; w: levels that a walk through an
+                         // octree goes up after a free node
     ivec4 octree;        // mip level of the initial nodes; nodes per texel: log2, less one;
                          // bits per node
     uvec4 nodeTest;      // what of a node's bits or codes the transfer function makes visible
     ivec4 jitter;        // xy: the viewport's corner in pixels; z: 1 where rays are jittered
 };
 #define firstPlane counts.x
-#define planeCount counts.y
-#define layersPerPlane counts.z
-#define planesPerOutline counts.w
+#define layersPerPlane counts.y
+#define octreeRise skipBlocks.w
+#define planesPerOutline counts.z
 
 layout(std140) uniform OutlineBlock {
     vec4 outlines[MAX_OUTLINES]; // xy: centre, zw: half size, normalised device coordinates

@@ -19,7 +19,7 @@ void compositeLayer(Ray ray, int i, int end, inout Walk walk) {
     if (i >= walk.decided) {
         Stretch stretch = stretchAt(uvw, ray);
         walk.decided = i + stretch.layers;
-        walk.free = stretch.free;
+        walk.free = stretch.free && stretch.layers > 0;
     }
     if (!walk.free) {
         countLayer();

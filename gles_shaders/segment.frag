@@ -1,5 +1,6 @@
 // A fragment of a proxy plane: composites its segment of the ray, front to back. Planes are blended
-// over each other.
+// over or under each other.
+#include TARGET_FILE
 #include "frame.glsl"
 flat in int plane;
 
@@ -16,7 +17,7 @@ void main() {
     Ray ray = rayOfFragment(gl_FragCoord.xy);
     ivec2 range = layersOfPlane(ray, plane);
     ivec2 live = range;
-    if (range.x < range.y && segmentIsEmpty(ray, range)) {
+    if (range.x < range.y && (terminated(0.0) || segmentIsEmpty(ray, range))) {
         live.y = live.x;
     }
     writeResult(march(ray, live), range);

@@ -1,10 +1,6 @@
 // A byte per block, four to a texel. See core/skip/free_lengths.h and skip_texture.h.
 uniform usampler3D skipTexels;
 
-ivec3 blockAt(vec3 position) {
-    return clamp(ivec3(floor(position)), ivec3(0), skipBlocks.xyz);
-}
-
 int freeCount(ivec3 block) {
     countSkipFetch();
     uint four = texelFetch(skipTexels, ivec3(block.x >> 2, block.yz), 0).r;

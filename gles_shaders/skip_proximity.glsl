@@ -1,7 +1,7 @@
 // Proximity clouds (Tukora 2020, section 2.3): 0 where something visible may be met, else 1 + the
 // free distance around any point of the block in units of skipMap.w. See
 // core/skip/proximity_cloud.h.
-#include "skip_stretch.glsl"
+#include "skip_box.glsl"
 #include "skip_grid.glsl"
 
 /// Samples strictly within the free length, and at least the one it is counted from.

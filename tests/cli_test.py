@@ -431,9 +431,10 @@ class Inputs(CliTest):
 class Statistics(CliTest):
     KEYS = {
         "device": {"renderer", "vendor", "version", "software"},
-        "plan": {"planes", "layers", "layersPerPlane", "termination", "variant", "reasons"},
+        "plan": {"planes", "layers", "layersPerPlane", "termination", "order", "planesPerMark", "variant", "reasons"},
         "frame_ms": {"median", "min", "max", "n"},
-        "counters": {"fragments", "layers_evaluated", "layers_skipped", "volume_fetches", "skip_fetches"},
+        "counters": {"fragments", "layers_evaluated", "layers_skipped", "volume_fetches", "skip_fetches", "stretches",
+                     "blocks_visited"},
         "volume": {"name", "dims", "type", "spacingMm", "bytes"},
     }
 
@@ -451,6 +452,16 @@ class Statistics(CliTest):
     def test_termination_is_an_opacity_or_off(self):
         for given, named in (("0.25", 0.25), ("off", "off")):
             self.assertEqual(self.stats(*self.sparse(), "--termination", given)["plan"]["termination"], named)
+
+    def test_order_is_as_asked_and_saves_work_front_to_back(self):
+        dense = (*self.sparse()[:-1], "16", "--termination", "0.9")  # planes
+        orders = {order: self.stats(*dense, "--order", order) for order in ("back-to-front", "front-to-back", "auto")}
+        for order in ("back-to-front", "front-to-back"):
+            self.assertEqual(orders[order]["plan"]["order"], order)
+        counts = {order: stats["counters"]["layers_evaluated"] for order, stats in orders.items()}
+        self.assertLess(counts["front-to-back"], 0.9 * counts["back-to-front"])
+        self.assertEqual(counts["auto"], counts[orders["auto"]["plan"]["order"]])
+        self.assertEqual(self.stats(*self.sparse(), "--termination", "off")["plan"]["order"], "back-to-front")
 
     def test_skipping_saves_work(self):
         sparse = (*self.sparse(), "--termination", "off")

@@ -69,6 +69,9 @@ Settings randomSettings(Dice& dice) {
     if (dice.chance(0.3)) {
         s.termination.reset();
     }
+    if (dice.chance(0.5)) {
+        s.order = dice.chance(0.5) ? BlendOrder::BackToFront : BlendOrder::FrontToBack;
+    }
     return s;
 }
 
@@ -92,7 +95,12 @@ void expectSound(const FramePlan& p, const Settings& s, const SceneFacts& facts)
     EXPECT_TRUE(p.variant.valid()) << name(p.variant);
     EXPECT_FALSE(p.variant.counts);
     EXPECT_TRUE(p.variant.unroll == 0 || p.variant.unroll >= p.layersPerPlane);
-    EXPECT_EQ(p.variant.terminates, p.terminationAlpha < 1.0);
+    EXPECT_EQ(p.variant.terminates || p.planesPerMark > 0, p.terminationAlpha < 1.0);
+    EXPECT_LT(p.planesPerMark, p.planes);
+    EXPECT_FALSE(p.variant.fetchesTarget && p.planesPerMark > 0);
+    if (p.order == BlendOrder::BackToFront) {
+        EXPECT_FALSE(p.variant.fetchesTarget || p.planesPerMark > 0);
+    }
     EXPECT_EQ(p.drawsNothing, !facts.anythingVisible);
     const bool narrowLinear =
         p.space == CompositingSpace::Linear && p.target == TargetFormat::Rgba8;
@@ -100,7 +108,7 @@ void expectSound(const FramePlan& p, const Settings& s, const SceneFacts& facts)
 }
 
 /// One reason for each choice, named as it was made, each on one line.
-void expectExplained(const FramePlan& p, const SceneFacts& facts) {
+void expectExplained(const FramePlan& p, const Settings& s, const SceneFacts& facts) {
     const Ratio ratio{p.planes, p.layersPerPlane,
                       p.variant.unroll > 0 ? SegmentForm::Unrolled : SegmentForm::Loop};
     std::vector<std::string> choices = {
@@ -112,7 +120,15 @@ void expectExplained(const FramePlan& p, const SceneFacts& facts) {
         p.variant.terminates ? "termination" : "no termination",
         p.tighten ? "tight planes" : "10-gons",
         std::string("target ") + name(p.target),
+        name(p.order),
     };
+    if (p.variant.fetchesTarget) {
+        choices.push_back("fetched target");
+    } else if (p.planesPerMark > 0) {
+        choices.push_back("marks every " + std::to_string(p.planesPerMark) + " planes");
+    } else if (p.order == BlendOrder::FrontToBack && s.termination && p.planes > 1) {
+        choices.push_back("no marks");
+    }
     if (p.drawsNothing) {
         choices.push_back("draws nothing");
     }
@@ -137,11 +153,12 @@ TEST(FramePlan, IsSoundAndExplainedForAnySettings) {
     for (int k = 0; k < 3000; ++k) {
         const Settings settings = randomSettings(dice);
         const SceneFacts facts = randomFacts(dice);
-        const gl::Caps& caps = dice.chance(0.5) ? kHeadset : kSoftware;
+        gl::Caps caps = dice.chance(0.5) ? kHeadset : kSoftware;
+        caps.framebufferFetch = dice.chance(0.5);
         const Result<FramePlan> first = plan(facts, settings, caps, {});
         ASSERT_TRUE(first.has_value()) << first.error().detail;
         expectSound(*first, settings, facts);
-        expectExplained(*first, facts);
+        expectExplained(*first, settings, facts);
         EXPECT_EQ(*first, *plan(facts, settings, caps, {})); // pure
     }
 }
@@ -302,6 +319,71 @@ TEST(FramePlan, TerminationIsLeftOutWhereItCannotHappen) {
     facts.maxExtinctionPerMm = 0.49 * std::log(10.0) / 16.0;
     EXPECT_FALSE(planned(settings, facts).variant.terminates);
     EXPECT_EQ(planned(settings, facts).terminationAlpha, 1.0);
+}
+
+// 444 layers of 1 mm, of which a fortieth is 11.1: the opacity 1 - e^-5 takes 5 / 11.1 per mm.
+TEST(FramePlan, FrontToBackWhereARayIsSoonOpaque) {
+    SceneFacts facts = boneFacts();
+    Settings settings{.layersPerPlane = 4, .termination = -std::expm1(-5.0)};
+    const auto orderOf = [&](const Settings& s) { return planned(s, facts).order; };
+    facts.maxExtinctionPerMm = 1.01 * 5.0 / 11.1;
+    EXPECT_EQ(orderOf(settings), BlendOrder::FrontToBack);
+    facts.maxExtinctionPerMm = 0.99 * 5.0 / 11.1;
+    EXPECT_EQ(orderOf(settings), BlendOrder::BackToFront);
+    settings.order = BlendOrder::FrontToBack;
+    EXPECT_EQ(orderOf(settings), BlendOrder::FrontToBack);
+
+    facts.maxExtinctionPerMm = 2.0;
+    settings.order.reset();
+    EXPECT_EQ(orderOf(settings), BlendOrder::FrontToBack);
+    settings.layersPerPlane = 444; // one plane
+    EXPECT_EQ(orderOf(settings), BlendOrder::BackToFront);
+    settings.layersPerPlane = 4;
+    settings.termination.reset();
+    EXPECT_EQ(orderOf(settings), BlendOrder::BackToFront);
+    // Slicing 4000 layers with an opacity of 0.09 each: 55 of them, but where 2 steps of 1/255 are
+    // left, a plane adds 0.18 of a step, which 8 bits round away.
+    settings.layersPerPlane = 1;
+    settings.termination = 1.0 - 1.5 / 255.0;
+    facts.maxExtinctionPerMm = -std::log1p(-0.09);
+    facts.sphere.radiusMm = 2000.0;
+    EXPECT_EQ(orderOf(settings), BlendOrder::BackToFront);
+    settings.target = TargetFormat::Rgba16f;
+    EXPECT_EQ(orderOf(settings), BlendOrder::FrontToBack);
+}
+
+TEST(FramePlan, MarksAreAsFarApartAsTheyCostAndNoRayIsOpaqueBefore) {
+    SceneFacts facts = boneFacts();
+    Settings settings{.layersPerPlane = 1, .order = BlendOrder::FrontToBack};
+    facts.maxExtinctionPerMm = 10.0;
+    // sqrt(2 N mark / plane), a mark being one layer, a plane 4 and its own: sqrt(888 / 5) = 13.3.
+    EXPECT_EQ(planned(settings, facts).planesPerMark, 14);
+    settings.layersPerPlane = 16; // sqrt(2 x 28 / 20) = 1.67
+    EXPECT_EQ(planned(settings, facts).planesPerMark, 2);
+    EXPECT_EQ(planned(settings, facts).terminationAlpha, *settings.termination);
+    facts.maxExtinctionPerMm = std::log(256.0) / 100.0; // 100 layers, 6.25 planes
+    EXPECT_EQ(planned(settings, facts).planesPerMark, 7);
+    facts.maxExtinctionPerMm = std::log(256.0) / 440.0; // all of the 28 planes
+    const FramePlan none = planned(settings, facts);
+    EXPECT_EQ(none.planesPerMark, 0);
+    EXPECT_NE(reasonFor(none, "no marks"), nullptr);
+    EXPECT_EQ(none.terminationAlpha < 1.0, none.variant.terminates);
+}
+
+TEST(FramePlan, FetchesTheTargetWhereTheDeviceCan) {
+    gl::Caps caps;
+    caps.framebufferFetch = true;
+    const Settings longer{.layersPerPlane = 16};
+    const Settings slicing{.layersPerPlane = 1};
+    for (const Settings& settings : {longer, slicing}) {
+        const FramePlan fetching = planned(settings, boneFacts(), caps);
+        EXPECT_TRUE(fetching.variant.fetchesTarget && fetching.variant.terminates);
+        EXPECT_EQ(fetching.planesPerMark, 0);
+    }
+    caps.isSoftware = true; // marks spare launching short segments' fragments
+    EXPECT_TRUE(planned(longer, boneFacts(), caps).variant.fetchesTarget);
+    EXPECT_FALSE(planned(slicing, boneFacts(), caps).variant.fetchesTarget);
+    EXPECT_GT(planned(slicing, boneFacts(), caps).planesPerMark, 0);
 }
 
 TEST(FramePlan, SkippingIsLeftOutWhereNothingIsEmpty) {

@@ -51,6 +51,8 @@ TEST(Caps, FlagsFollowExtensionsAndTheMask) {
                           "GL_NV_image_formats",
                           "GL_EXT_disjoint_timer_query",
                           "GL_EXT_shader_framebuffer_fetch_non_coherent"};
+    EXPECT_FALSE(gl::capsFrom(strings, {})->framebufferFetch); // would need a barrier per plane
+    strings.extensions.back() = "GL_EXT_shader_framebuffer_fetch";
     const gl::Caps rich = *gl::capsFrom(strings, {});
     EXPECT_TRUE(rich.norm16 && rich.floatLinear && rich.floatBlend && rich.timerQuery &&
                 rich.framebufferFetch && rich.multiview && rich.imageFormats);

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -27,7 +29,7 @@ ErrorCode refusalOf(std::string_view spec) {
 }
 
 TEST(Phantoms, AllAreValidVolumesOfTheAskedSize) {
-    EXPECT_EQ(phantomList().size(), 7U);
+    EXPECT_EQ(phantomList().size(), 8U);
     for (const PhantomInfo& info : phantomList()) {
         EXPECT_FALSE(info.description.empty());
         const Volume volume = phantom("phantom:" + info.name + ":20x7x9");
@@ -148,6 +150,47 @@ TEST(Phantoms, VesselsFillAFewPerCentAndStayInside) {
     EXPECT_GT(share, 0.01);
     EXPECT_LT(share, 0.10);
     EXPECT_EQ(computeStatistics(volume).max, 3000.0);
+}
+
+/// Least and greatest of a cell's corners.
+std::pair<double, double> endsOf(const Volume& volume, glm::ivec3 cell) {
+    std::pair<double, double> ends{1e9, -1e9};
+    for (int corner = 0; corner < 8; ++corner) {
+        const double value =
+            volume.valueAt(cell + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2));
+        ends = {std::min(ends.first, value), std::max(ends.second, value)};
+    }
+    return ends;
+}
+
+TEST(Phantoms, GapHasItsBulkBetweenTwoMaterialsThatDoNotMeet) {
+    const Volume volume = phantom("phantom:gap:96");
+    std::map<double, std::int64_t> voxels; // of each pure material
+    for (int z = 0; z < 95; ++z) {
+        for (int y = 0; y < 95; ++y) {
+            for (int x = 0; x < 95; ++x) {
+                ++voxels[volume.valueAt({x, y, z})];
+                const auto [least, greatest] = endsOf(volume, {x, y, z});
+                // No cell mixes what lies outside the bulk with what lies inside it.
+                ASSERT_TRUE(greatest <= 900.0 || least >= 900.0) << x << " " << y << " " << z;
+            }
+        }
+    }
+    // Balls of radius 0.95 and 0.9, half a voxel of border on either side of each; of the tree at
+    // least the trunk, of radius 0.09 and length 0.42, at 0.6 of its size.
+    const double voxel = 2.0 / 96.0;
+    const auto filled = [&](double value) {
+        return static_cast<double>(voxels[value]) * voxel * voxel * voxel;
+    };
+    const double rind = ballVolume(0.95 - voxel / 2) - ballVolume(0.9 + voxel / 2);
+    EXPECT_NEAR(filled(300.0), rind, 0.05 * rind);
+    const double trunk = kPi * std::pow(0.6 * 0.09 - voxel / 2, 2.0) * 0.6 * 0.42;
+    EXPECT_GT(filled(1500.0), trunk);
+    const double bulk = ballVolume(0.9 - voxel / 2);
+    EXPECT_LT(filled(900.0), bulk - trunk);
+    EXPECT_GT(filled(900.0), 0.95 * bulk);
+    EXPECT_EQ(computeStatistics(volume).min, 0.0);
+    EXPECT_EQ(computeStatistics(volume).max, 1500.0);
 }
 
 TEST(VesselDistance, IsADistance) {

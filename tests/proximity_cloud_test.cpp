@@ -6,65 +6,19 @@
 #include <rapidcheck/gtest.h>
 
 #include "core/skip/occupancy.h"
-#include "tests/support/skip_scene.h"
+#include "tests/support/skip_blocks.h"
 
 namespace slabcast {
 namespace {
 
 using test::bandTable;
 using test::constantScene;
+using test::forBox;
+using test::indexOf;
+using test::occupiedByTheWords;
+using test::randomEdge;
+using test::randomScene;
 using test::SkipScene;
-
-std::size_t indexOf(glm::ivec3 p, glm::ivec3 size) {
-    return (std::size_t(p.z) * size.y + p.y) * size.x + p.x;
-}
-
-/// Calls visit(p) for all p with first <= p < end.
-template <class Visit>
-void forBox(glm::ivec3 first, glm::ivec3 end, Visit visit) {
-    for (int z = first.z; z < end.z; ++z) {
-        for (int y = first.y; y < end.y; ++y) {
-            for (int x = first.x; x < end.x; ++x) {
-                visit(glm::ivec3(x, y, z));
-            }
-        }
-    }
-}
-
-bool cellVisible(const SkipScene& scene, const CellVisibility& visibility, glm::ivec3 cell) {
-    std::uint16_t low = 65535;
-    std::uint16_t high = 0;
-    forBox(cell, cell + 2, [&](glm::ivec3 corner) {
-        const auto code = scene.code(glm::clamp(corner, glm::ivec3(0), scene.geometry.dims - 1));
-        low = std::min(low, code);
-        high = std::max(high, code);
-    });
-    return visibility.visible(low, high);
-}
-
-/// All cells against all blocks, half cells at the border (-1 and dims - 1) included, from their
-/// intervals alone.
-std::vector<std::uint8_t> occupiedByTheWords(const SkipScene& scene, int edge) {
-    const glm::ivec3 dims = scene.geometry.dims;
-    const glm::ivec3 blocks = (dims + edge - 1) / edge;
-    const CellVisibility visibility = scene.visibility();
-    std::vector<std::uint8_t> occupied(std::size_t(blocks.x) * blocks.y * blocks.z);
-    forBox(glm::ivec3(-1), dims, [&](glm::ivec3 cell) {
-        if (!cellVisible(scene, visibility, cell)) {
-            return;
-        }
-        const glm::dvec3 low = glm::max(glm::dvec3(cell) + 0.5, 0.0);
-        const glm::dvec3 high = glm::min(glm::dvec3(cell) + 1.5, glm::dvec3(dims));
-        forBox(glm::ivec3(0), blocks, [&](glm::ivec3 block) {
-            const glm::dvec3 from = glm::dvec3(block * edge) - 1.0;
-            const glm::dvec3 to = glm::dvec3((block + 1) * edge) + 1.0;
-            if (glm::all(glm::lessThanEqual(low, to)) && glm::all(glm::lessThanEqual(from, high))) {
-                occupied[indexOf(block, blocks)] = 1;
-            }
-        });
-    });
-    return occupied;
-}
 
 /// Distance in quanta from a block to the nearest occupied one, all pairs, box to box. Negative
 /// where none is.
@@ -83,25 +37,6 @@ double nearestInQuanta(glm::ivec3 block, glm::ivec3 blocks,
     return nearest;
 }
 
-/// A few odd voxels in an even background: some free space, some blocks, bands between voxels.
-SkipScene randomScene(int largestDim) {
-    const auto dim = rc::gen::inRange(1, largestDim);
-    const glm::ivec3 dims(*dim, *dim, *dim);
-    const int first = *rc::gen::inRange(2, 256);
-    const int last = std::min(255, first + *rc::gen::element(0, 1, 5, 100));
-    SkipScene scene = constantScene(dims, 0, bandTable(256, first, last));
-    const auto odd = *rc::gen::container<std::vector<std::pair<int, int>>>(rc::gen::pair(
-        rc::gen::inRange(0, int(scene.codes.codes.size())), rc::gen::inRange(0, 256)));
-    for (const auto& [voxel, code] : odd) {
-        scene.codes.codes[voxel] = std::uint16_t(code);
-    }
-    return scene;
-}
-
-int randomEdge() {
-    return *rc::gen::element(1, 2, 4, 8);
-}
-
 FreeLengths built(const SkipScene& scene, int edge) {
     const auto cloud = buildProximityCloud(scene.visibility(), scene.geometry, edge);
     EXPECT_TRUE(cloud.has_value());
@@ -111,7 +46,7 @@ FreeLengths built(const SkipScene& scene, int edge) {
 RC_GTEST_PROP(ProximityCloud, OccupiesTheBlocksThatVisibleCellsMeet, ()) {
     const SkipScene scene = randomScene(20);
     const int edge = randomEdge();
-    const std::vector<std::uint8_t> expected = occupiedByTheWords(scene, edge);
+    const std::vector<std::uint8_t> expected = occupiedByTheWords(scene, scene.visibility(), edge);
     const auto occupancy = occupiedBlocks(scene.visibility(), edge);
     RC_ASSERT(occupancy.has_value());
     RC_ASSERT(occupancy->occupied == expected);
@@ -126,7 +61,7 @@ RC_GTEST_PROP(ProximityCloud, OccupiesTheBlocksThatVisibleCellsMeet, ()) {
 /// Checks every free block against all pairs. `loss`: the part of a length that rounding may take.
 void checkLengths(const SkipScene& scene, int edge, double loss) {
     const FreeLengths cloud = built(scene, edge);
-    const std::vector<std::uint8_t> occupied = occupiedByTheWords(scene, edge);
+    const std::vector<std::uint8_t> occupied = occupiedByTheWords(scene, scene.visibility(), edge);
     RC_ASSERT(cloud.quantumMm == scene.geometry.smallestVoxelEdgeMm());
     forBox(glm::ivec3(0), cloud.blocks, [&](glm::ivec3 block) {
         const int stored = cloud.counts[indexOf(block, cloud.blocks)];

@@ -279,7 +279,7 @@ TEST_F(RendererUpkeepTest, WhatIsOffIsAbsentFromTheProgram) {
         {"texelFetch(skipTexels", [](const ShaderVariant& v) { return v.skip != SkipForm::None; }},
         {"smoothstep(", [](const ShaderVariant& v) { return v.shaded; }},
         {"texelFetch(volumeTexels", [](const ShaderVariant& v) { return v.exactField; }},
-        {"alpha > viewport.w", [](const ShaderVariant& v) { return v.terminates; }},
+        {"> viewport.w", [](const ShaderVariant& v) { return v.terminates; }},
         {"while (", [](const ShaderVariant& v) { return v.unroll == 0; }},
         {"work1", [](const ShaderVariant& v) { return v.counts; }},
     };

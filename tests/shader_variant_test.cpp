@@ -36,10 +36,11 @@ std::size_t count(const std::string& text, const std::string& what) {
 }
 
 TEST(ShaderVariant, ValidOnesAreAsManyAsTheTableSays) {
-    // 11 forms (10 lengths and the loop), skip, terminates, counts; post also has shaded and
-    // exactField, pre-integrated exactField. Rounded to fp16: the loop that draws.
+    // 11 forms (10 lengths and the loop), 6 of skipping, 3 of termination (none, within segments,
+    // across planes), counts; post also has shaded and exactField, pre-integrated exactField.
+    // Rounded to fp16: the loop that draws.
     const std::size_t looks = 4 + 1 + 2;
-    const std::size_t expected = 11 * (2 * 2 * 2) * looks + (2 * 2) * looks;
+    const std::size_t expected = 11 * (6 * 3 * 2) * looks + (6 * 3) * looks;
     const std::vector<ShaderVariant> variants = allVariants();
     EXPECT_EQ(variants.size(), expected);
     EXPECT_EQ(std::set<ShaderVariant>(variants.begin(), variants.end()).size(), expected);
@@ -60,6 +61,7 @@ TEST(ShaderVariant, ValidityKnowsLengthsAndBakedTexels) {
     EXPECT_FALSE(
         (ShaderVariant{.classification = Classification::Pre, .exactField = true}.valid()));
     EXPECT_TRUE((ShaderVariant{.classification = Classification::Pre, .counts = true}.valid()));
+    EXPECT_FALSE((ShaderVariant{.fetchesTarget = true}.valid()));
     constexpr auto kPreintegrated = Classification::Preintegrated;
     EXPECT_FALSE((ShaderVariant{.classification = kPreintegrated, .shaded = true}.valid()));
     EXPECT_TRUE((ShaderVariant{.classification = kPreintegrated, .exactField = true}.valid()));
@@ -69,6 +71,8 @@ TEST(ShaderVariant, NamesAreAsDocumented) {
     EXPECT_EQ(name(ShaderVariant{
                   .skip = SkipForm::Balls, .shaded = true, .terminates = true, .unroll = 16}),
               "post+balls+shaded+terminate/unroll16");
+    EXPECT_EQ(name(ShaderVariant{.terminates = true, .fetchesTarget = true}),
+              "post+terminate+fetch/loop");
     EXPECT_EQ(name(ShaderVariant{}), "post/loop");
 }
 
@@ -103,8 +107,12 @@ TEST(ShaderVariant, WhatIsOffIsAbsentFromTheText) {
         {"pow(", [](const V& v) { return v.shaded; }},
         {"halved", [](const V& v) { return v.halfGroups != 0; }},
         {"viewport.w", [](const V& v) { return v.terminates; }},
-        {"out vec4 colour;", [](const V& v) { return !v.counts; }},
-        {"out vec4 work1;", [](const V& v) { return v.counts; }},
+        {"out highp vec4 colour;", [](const V& v) { return !v.counts; }},
+        {"out highp vec4 work1;", [](const V& v) { return v.counts; }},
+        {"inout highp vec4 colour;", [](const V& v) { return v.fetchesTarget && !v.counts; }},
+        {"#extension", [](const V& v) { return v.fetchesTarget && !v.counts; }},
+        {"sampler2D layerBefore;", [](const V& v) { return v.fetchesTarget && v.counts; }},
+        {"opacityBefore()", [](const V& v) { return v.fetchesTarget; }},
         {"counted", [](const V& v) { return v.counts; }},
         {"discard", never},
         {"#include", never},
@@ -190,11 +198,11 @@ TEST(ShaderText, AFileThatIsNotThereIsAnErrorThatNamesIt) {
     EXPECT_NE(file.error().detail.find("absent.frag"), std::string::npos);
     // Through an include whose define is missing, and through one that names nothing.
     for (const std::map<std::string, std::string>& defines :
-         {std::map<std::string, std::string>{}, {{"MEDIUM_FILE", "absent.glsl"}}}) {
+         {std::map<std::string, std::string>{}, {{"TARGET_FILE", "absent.glsl"}}}) {
         const Result<std::string> inner = expandShader("segment.frag", defines);
         ASSERT_FALSE(inner);
         EXPECT_EQ(inner.error().code, ErrorCode::ShaderCompile);
-        EXPECT_NE(inner.error().detail.find(defines.empty() ? "MEDIUM_FILE" : "absent.glsl"),
+        EXPECT_NE(inner.error().detail.find(defines.empty() ? "TARGET_FILE" : "absent.glsl"),
                   std::string::npos);
     }
 }

@@ -95,10 +95,10 @@ View randomView(Random& random, const Scene& scene) {
 
 Settings randomSettings(Random& random) {
     Settings settings;
-    settings.form = random.oneOf({SegmentForm::Unrolled, SegmentForm::Loop});
+    settings.form = random.chance(0.2) ? SegmentForm::Unrolled : SegmentForm::Loop;
     // Leaps stay within a segment: long ones show a leap that goes too far.
     settings.layersPerPlane = settings.form == SegmentForm::Unrolled
-                                  ? random.oneOf({1, 16, 32})
+                                  ? random.oneOf({1, 16})
                                   : random.oneOf({1, 16, kAll, kAll});
     settings.layerSpacingVoxels = random.oneOf({0.125, 0.5, 1.0, 4.0});
     settings.lattice = random.oneOf({LatticeKind::Planar, LatticeKind::Shells});
@@ -109,6 +109,18 @@ Settings randomSettings(Random& random) {
     return settings;
 }
 
+SkipOptions randomOptions(Random& random, const SkipStructureInfo& info) {
+    SkipOptions options{.structure = info.structure};
+    options.blockEdgeVoxels =
+        info.edges[static_cast<std::size_t>(random.below(static_cast<int>(info.edges.size())))];
+    options.bits = random.oneOf({8, 16, 32, 64, 128});
+    options.partitions = random.oneOf({16, 32, 256});
+    options.separateMinimum = random.chance(0.5);
+    options.initialLevel = random.below(5);
+    options.traversal = random.oneOf({Traversal::Bidirectional, Traversal::TopDown});
+    return options;
+}
+
 bool showsSomething(const Picture& picture) {
     return std::any_of(picture.pixels.begin(), picture.pixels.end(),
                        [](glm::vec4 p) { return p.a > 0.0F; });
@@ -116,7 +128,8 @@ bool showsSomething(const Picture& picture) {
 
 class SkipEqualityTest : public RenderTest {
 protected:
-    /// Draws one random scene in all four ways; returns whether anything was to be seen.
+    /// Draws one random scene plainly and in every way of skipping; returns whether anything was to
+    /// be seen.
     bool drawAllWays(std::uint64_t seed, bool exact, Classification classification, bool shaded) {
         Random random(seed);
         const Volume volume = randomVolume(random);
@@ -125,8 +138,7 @@ protected:
         if (shaded) {
             look.shading = ShadingParameters{};
         }
-        const Scene scene =
-            makeScene(volume, look, {.blockEdgeVoxels = random.oneOf({1, 2, 4, 8})}, exact);
+        Scene scene = makeScene(volume, look, {.structure = SkipStructure::None}, exact);
         Settings settings = randomSettings(random);
         settings.classification = classification;
         settings.shaded = shaded;
@@ -134,22 +146,24 @@ protected:
             settings.layerSpacingVoxels = std::max(settings.layerSpacingVoxels, 0.5);
         }
         const View view = randomView(random, scene);
-        Picture plain;
-        for (const bool tighten : {false, true}) {
-            for (const SkipStructure skip : {SkipStructure::None, SkipStructure::Proximity}) {
-                settings.tighten = tighten;
-                settings.skip = skip;
-                const FramePlan plan = decide(scene, settings);
-                const Picture picture = draw(scene, plan, view, kSmall);
-                if (plain.pixels.empty()) {
-                    plain = picture;
-                }
-                EXPECT_EQ(differingPixels(plain, picture), 0)
-                    << "seed " << seed << ", " << name(plan.variant)
-                    << (tighten ? ", tight, " : ", ") << name(plan.lattice.kind) << ", "
-                    << plan.planes << "x" << plan.layersPerPlane << ", " << name(plan.target)
-                    << ", off by " << largestDifference(plain, picture);
-            }
+        const Picture plain = draw(scene, settings, view, kSmall);
+        // Two of seven: every program takes a software driver a third of a second to compile.
+        for (int k = 0; k < 2; ++k) {
+            const SkipStructureInfo& info =
+                skipStructures()[static_cast<std::size_t>(1 + random.below(7))];
+            const SkipOptions options = randomOptions(random, info);
+            const Result<void> set = scene.setLook(look, options, 4096);
+            EXPECT_TRUE(set.has_value()) << (set ? "" : set.error().detail);
+            settings.skip = random.chance(0.9) ? info.structure : SkipStructure::None;
+            settings.tighten = random.chance(0.5);
+            const FramePlan plan = decide(scene, settings);
+            const Picture picture = draw(scene, plan, view, kSmall);
+            EXPECT_EQ(differingPixels(plain, picture), 0)
+                << "seed " << seed << ", " << name(plan.skip) << " of edge "
+                << options.blockEdgeVoxels << ", " << name(plan.variant)
+                << (plan.tighten ? ", tight, " : ", ") << name(plan.lattice.kind) << ", "
+                << plan.planes << "x" << plan.layersPerPlane << ", " << name(plan.target)
+                << ", off by " << largestDifference(plain, picture);
         }
         return showsSomething(plain);
     }
@@ -195,25 +209,25 @@ TEST_F(SkipEqualityTest, PostClassified) {
     drawScenes(1000, 24, false, Classification::Post, false);
 }
 TEST_F(SkipEqualityTest, PostClassifiedExactField) {
-    drawScenes(2000, 12, true, Classification::Post, false);
+    drawScenes(2000, 10, true, Classification::Post, false);
 }
 TEST_F(SkipEqualityTest, PreClassified) {
-    drawScenes(3000, 14, false, Classification::Pre, false);
+    drawScenes(3000, 10, false, Classification::Pre, false);
 }
 TEST_F(SkipEqualityTest, PreClassifiedLit) {
-    drawScenes(4000, 6, false, Classification::Pre, true);
+    drawScenes(4000, 5, false, Classification::Pre, true);
 }
 TEST_F(SkipEqualityTest, PreIntegrated) {
-    drawScenes(7000, 14, false, Classification::Preintegrated, false);
+    drawScenes(7000, 10, false, Classification::Preintegrated, false);
 }
 TEST_F(SkipEqualityTest, PreIntegratedExactField) {
-    drawScenes(8000, 6, true, Classification::Preintegrated, false);
+    drawScenes(8000, 5, true, Classification::Preintegrated, false);
 }
 TEST_F(SkipEqualityTest, Shaded) {
-    drawScenes(5000, 8, false, Classification::Post, true);
+    drawScenes(5000, 6, false, Classification::Post, true);
 }
 TEST_F(SkipEqualityTest, ShadedExactField) {
-    drawScenes(6000, 5, true, Classification::Post, true);
+    drawScenes(6000, 4, true, Classification::Post, true);
 }
 
 } // namespace slabcast::test

@@ -34,6 +34,8 @@ constexpr Tracked kTracked[] = {
     {"colour mask", GL_COLOR_WRITEMASK, 4},
     {"clear colour", GL_COLOR_CLEAR_VALUE, 4},
     {"depth mask", GL_DEPTH_WRITEMASK, 1},
+    {"depth function", GL_DEPTH_FUNC, 1},
+    {"depth range", GL_DEPTH_RANGE, 2},
     {"blend source rgb", GL_BLEND_SRC_RGB, 1},
     {"blend source alpha", GL_BLEND_SRC_ALPHA, 1},
     {"blend destination rgb", GL_BLEND_DST_RGB, 1},
@@ -44,6 +46,7 @@ constexpr Tracked kTracked[] = {
     {"cull face", GL_CULL_FACE, 1},
     {"depth test", GL_DEPTH_TEST, 1},
     {"dither", GL_DITHER, 1},
+    {"polygon offset", GL_POLYGON_OFFSET_FILL, 1},
     {"rasterizer discard", GL_RASTERIZER_DISCARD, 1},
     {"sample alpha to coverage", GL_SAMPLE_ALPHA_TO_COVERAGE, 1},
     {"sample coverage", GL_SAMPLE_COVERAGE, 1},
@@ -54,6 +57,7 @@ constexpr Tracked kTracked[] = {
     {"unpack buffer", GL_PIXEL_UNPACK_BUFFER_BINDING, 1},
     {"pack buffer", GL_PIXEL_PACK_BUFFER_BINDING, 1},
     {"uniform buffer", GL_UNIFORM_BUFFER_BINDING, 1},
+    {"storage buffer", GL_SHADER_STORAGE_BUFFER_BINDING, 1},
     {"unpack alignment", GL_UNPACK_ALIGNMENT, 1},
     {"unpack row length", GL_UNPACK_ROW_LENGTH, 1},
     {"unpack image height", GL_UNPACK_IMAGE_HEIGHT, 1},
@@ -65,6 +69,17 @@ constexpr Tracked kTracked[] = {
     {"pack skip pixels", GL_PACK_SKIP_PIXELS, 1},
     {"pack skip rows", GL_PACK_SKIP_ROWS, 1},
     {"active texture", GL_ACTIVE_TEXTURE, 1},
+};
+
+struct IndexedBuffer {
+    std::string name;
+    GLenum binding, start, size;
+};
+
+const IndexedBuffer kIndexedBuffers[] = {
+    {"uniform buffer ", GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE},
+    {"storage buffer ", GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START,
+     GL_SHADER_STORAGE_BUFFER_SIZE},
 };
 
 GLint integer(GLenum query) {
@@ -80,15 +95,22 @@ Snapshot snapshot() {
         gl::GetFloatv(row.query, values.data());
         state[row.name] = {values.begin(), values.begin() + row.count};
     }
-    for (GLuint i = 0; i < 2; ++i) {
-        GLint64 buffer = 0;
-        GLint64 start = 0;
-        GLint64 size = 0;
-        gl::GetInteger64i_v(GL_UNIFORM_BUFFER_BINDING, i, &buffer);
-        gl::GetInteger64i_v(GL_UNIFORM_BUFFER_START, i, &start);
-        gl::GetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, i, &size);
-        state["uniform buffer " + std::to_string(i)] = {double(buffer), double(start),
-                                                        double(size)};
+    for (const IndexedBuffer& kind : kIndexedBuffers) {
+        for (GLuint i = 0; i < 2; ++i) {
+            std::vector<double>& value = state[kind.name + std::to_string(i)];
+            for (const GLenum query : {kind.binding, kind.start, kind.size}) {
+                GLint64 part = 0;
+                gl::GetInteger64i_v(query, i, &part);
+                value.push_back(double(part));
+            }
+        }
+    }
+    for (const GLenum query :
+         {GL_IMAGE_BINDING_NAME, GL_IMAGE_BINDING_LEVEL, GL_IMAGE_BINDING_LAYERED,
+          GL_IMAGE_BINDING_LAYER, GL_IMAGE_BINDING_ACCESS, GL_IMAGE_BINDING_FORMAT}) {
+        GLint value = 0;
+        gl::GetIntegeri_v(query, 0, &value);
+        state["image unit 0, " + std::to_string(query)] = {double(value)};
     }
     GLint active = 0;
     gl::GetIntegerv(GL_ACTIVE_TEXTURE, &active);
@@ -111,6 +133,8 @@ struct Owner {
     explicit Owner(int number) : k(number) {
         gl::BindBuffer(GL_UNIFORM_BUFFER, buffer.id());
         gl::BufferData(GL_UNIFORM_BUFFER, 4096, nullptr, GL_STATIC_DRAW);
+        gl::BindTexture(GL_TEXTURE_3D, volume.id()); // image units take immutable textures alone
+        gl::TexStorage3D(GL_TEXTURE_3D, 2, GL_RGBA32UI, 4, 4, 4);
     }
 
     int k;
@@ -142,10 +166,14 @@ struct Owner {
              {GL_ARRAY_BUFFER, GL_PIXEL_UNPACK_BUFFER, GL_PIXEL_PACK_BUFFER}) {
             gl::BindBuffer(target, buffer.id());
         }
-        gl::BindBufferRange(GL_UNIFORM_BUFFER, 0, buffer.id(), 256 * k, 512);
-        gl::BindBufferBase(GL_UNIFORM_BUFFER, 1, buffer.id());
-        gl::BindBuffer(GL_UNIFORM_BUFFER,
-                       k == 1 ? 0 : buffer.id()); // not what the last index holds
+        for (const GLenum target : {GL_UNIFORM_BUFFER, GL_SHADER_STORAGE_BUFFER}) {
+            gl::BindBufferRange(target, 0, buffer.id(), 256 * k, 512);
+            gl::BindBufferBase(target, 1, buffer.id());
+            gl::BindBuffer(target, k == 1 ? 0 : buffer.id()); // not what the last index holds
+        }
+        gl::BindImageTexture(0, volume.id(), k - 1, k == 1 ? GL_TRUE : GL_FALSE, k,
+                             k == 1 ? GL_WRITE_ONLY : GL_READ_ONLY,
+                             k == 1 ? GL_RGBA32F : GL_RGBA32UI);
     }
 
     void setAll() const {
@@ -156,14 +184,16 @@ struct Owner {
         gl::ColorMask(on, !on, on, !on);
         gl::ClearColor(shade, shade, shade, shade);
         gl::DepthMask(on);
+        gl::DepthFunc(GL_NEVER + static_cast<GLenum>(k));
+        gl::DepthRangef(shade, 1.0F - shade);
         gl::BlendFuncSeparate(GL_SRC_COLOR + k, GL_DST_ALPHA + k, GL_ONE_MINUS_SRC_COLOR + k,
                               GL_SRC_ALPHA + k);
         gl::BlendEquationSeparate(k == 1 ? GL_FUNC_SUBTRACT : GL_MAX,
                                   k == 1 ? GL_MIN : GL_FUNC_ADD);
         for (const GLenum name :
-             {GL_BLEND, GL_CULL_FACE, GL_DEPTH_TEST, GL_DITHER, GL_RASTERIZER_DISCARD,
-              GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE, GL_SAMPLE_MASK, GL_SCISSOR_TEST,
-              GL_STENCIL_TEST}) {
+             {GL_BLEND, GL_CULL_FACE, GL_DEPTH_TEST, GL_DITHER, GL_POLYGON_OFFSET_FILL,
+              GL_RASTERIZER_DISCARD, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE,
+              GL_SAMPLE_MASK, GL_SCISSOR_TEST, GL_STENCIL_TEST}) {
             (on ? gl::Enable : gl::Disable)(name);
         }
         for (const GLenum name : {GL_UNPACK_ALIGNMENT, GL_PACK_ALIGNMENT}) {

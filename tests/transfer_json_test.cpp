@@ -103,7 +103,7 @@ VolumeStatistics skewed() {
 
 TEST(Presets, allAreValidAndShowSomething) {
     ASSERT_EQ(presetNames(), (std::vector<std::string>{"angio", "ct-bone", "ct-bone-skin",
-                                                       "ct-lung", "linear", "mr"}));
+                                                       "ct-lung", "gap", "linear", "mr"}));
     for (const std::string& name : presetNames()) {
         const Result<TransferFunction> tf = presetTransferFunction(name, skewed());
         ASSERT_TRUE(tf) << tf.error().detail;

@@ -14,6 +14,8 @@ namespace {
 /// smoothstep() needs two different edges, also for data without any gradient.
 constexpr double kLeastGradient = 1e-30;
 
+constexpr int kToInitialLevel = 31; // levels: more than any octree has
+
 glm::vec4 packed(glm::dvec3 xyz, double w) {
     return glm::vec4(glm::dvec4(xyz, w));
 }
@@ -35,7 +37,8 @@ void fillSkip(FrameBlock& block, const BuiltSkip& skip, glm::ivec3 dims) {
     const glm::ivec3 blocks = (dims + edge - 1) / edge;
     block.skipMap =
         packed(glm::dvec3(dims) / double(edge), skip.lengths ? skip.lengths->quantumMm : 0.0);
-    block.skipBlocks = glm::ivec4(blocks - 1, 0);
+    const bool topDown = skip.options.traversal == Traversal::TopDown;
+    block.skipBlocks = glm::ivec4(blocks - 1, topDown ? kToInitialLevel : 1);
     if (skip.octree) {
         const int bits = skip.octree->bitsPerNode;
         const int perTexel = octreeLayout(blocks, skip.octree->coarsest() + 1, bits).perTexel;
@@ -76,8 +79,9 @@ FrameBlock makeFrameBlock(const RayFrame& f, const Scene& scene, const FramePlan
     block.sphere = packed(f.sphereCentre, f.sphereDistance);
     block.miss = glm::vec4(glm::dvec4(f.tangent0 * f.sphereCentre.z - glm::dvec2(f.sphereCentre),
                                       f.tangentPerPixel * f.sphereCentre.z));
-    block.viewport =
-        glm::vec4(glm::dvec4(f.viewportCentre, shells ? 1.0 : 0.0, plan.terminationAlpha));
+    block.viewport = glm::vec4(
+        glm::dvec4(f.viewportCentre, shells ? 1.0 : 0.0,
+                   plan.variant.fetchesTarget ? saturatedAlpha(plan) : plan.terminationAlpha));
     const TableAxis axis = tableAxis(scene.texels(), scene.table());
     const ClassifiedTexels* classified = scene.classified();
     block.tableMap = packed({axis.texelsPerSampled, axis.firstSampled,
@@ -95,7 +99,7 @@ FrameBlock makeFrameBlock(const RayFrame& f, const Scene& scene, const FramePlan
     if (scene.look().shading) {
         fillShading(block, *scene.look().shading, scene.geometry(), scene.texels().valueScale);
     }
-    block.counts.z = plan.layersPerPlane;
+    block.counts.y = plan.layersPerPlane;
     block.jitter = {glm::ivec2(f.viewportCorner), f.lattice.jittered ? 1 : 0, 0};
     return block;
 }

@@ -15,8 +15,11 @@ namespace slabcast {
 /// What planes are blended into.
 enum class TargetFormat : std::uint8_t { Rgba8, Rgba16f };
 enum class SegmentForm : std::uint8_t { Auto, Unrolled, Loop };
+/// Planes over what is there, or nearest first under what is gathered, in a layer of our own.
+enum class BlendOrder : std::uint8_t { BackToFront, FrontToBack };
 
 const char* name(TargetFormat format);
+const char* name(BlendOrder order);
 
 /// What a user may ask for. Unset optionals are decided by the plan.
 struct Settings {
@@ -33,7 +36,9 @@ struct Settings {
     TargetFormat target = TargetFormat::Rgba8;
     CompositingSpace space = CompositingSpace::Display;
     bool shaded = false;
-    /// Opacity at which a segment is left: what is lost behind it is at most one 8-bit step.
+    std::optional<BlendOrder> order;
+    /// Opacity at which a segment is left and, front to back, a pixel: what is lost behind is at
+    /// most one 8-bit step.
     std::optional<double> termination = 1.0 - 1.0 / 256.0;
 };
 
@@ -87,11 +92,17 @@ struct FramePlan {
     TargetFormat target = TargetFormat::Rgba8;
     CompositingSpace space = CompositingSpace::Display;
     double terminationAlpha = 1.0;
+    BlendOrder order = BlendOrder::BackToFront;
+    int planesPerMark = 0; // front to back: planes between marks of saturated pixels; 0: no marks
     bool drawsNothing = false;
     std::vector<Reason> reasons;
 
     bool operator==(const FramePlan& other) const;
 };
+
+/// Stored alpha above which a pixel of the plan's layer counts as having passed the termination
+/// opacity: a stored value stands for all that lie within half a step of it.
+double saturatedAlpha(const FramePlan& plan);
 
 /// Total layers that the settings ask for: the given number or enough for the sphere at the
 /// spacing, and one more where jitter moves them.

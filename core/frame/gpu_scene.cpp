@@ -1,8 +1,7 @@
 #include "core/frame/gpu_scene.h"
 
-#include <span>
+#include <algorithm>
 
-#include "core/skip/skip_texture.h"
 #include "core/volume/volume_texture.h"
 
 namespace slabcast {
@@ -21,32 +20,44 @@ Result<void> keep(gl::Texture& slot, Result<gl::Texture> made) {
 } // namespace
 
 GpuScene::Sources GpuScene::needs(const Scene& scene, const FramePlan& plan) {
-    if (plan.drawsNothing) {
-        return {};
+    if (plan.drawsNothing) { // for now, where the TF may be another one in the next frame
+        return {scene.live() != nullptr ? scene.texelsGeneration() : 0, 0};
     }
     const int look = scene.lookGeneration();
     const bool pre = plan.variant.classification == Classification::Pre;
-    return {pre ? look : scene.texelsGeneration(), pre ? 0 : look,
-            plan.skip == SkipStructure::None ? 0 : scene.skip().generation};
+    return {pre ? look : scene.texelsGeneration(), pre ? 0 : look};
+}
+
+std::vector<const BuiltSkip*> GpuScene::neededSkips(const Scene& scene, const FramePlan& plan) {
+    std::vector<const BuiltSkip*> needed;
+    const bool skips = plan.skip != SkipStructure::None && !plan.drawsNothing;
+    if (skips || scene.live() != nullptr) {
+        for (const BuiltSkip* skip : scene.residentSkips()) {
+            if (skip->exists()) {
+                needed.push_back(skip);
+            }
+        }
+    }
+    return needed;
+}
+
+const GpuScene::HeldSkip* GpuScene::held(const BuiltSkip& skip) const {
+    const auto found = std::find_if(skips_.begin(), skips_.end(), [&](const HeldSkip& one) {
+        return one.generation == skip.generation;
+    });
+    return found == skips_.end() ? nullptr : &*found;
 }
 
 bool GpuScene::serve(const Scene& scene, const FramePlan& plan) const {
-    return held_ == needs(scene, plan);
+    const bool skips = plan.skip != SkipStructure::None && !plan.drawsNothing;
+    return held_ == needs(scene, plan) && (!skips || held(scene.skip()) != nullptr);
 }
 
 Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const gl::Caps& caps) {
     const Sources needed = needs(scene, plan);
-    if (held_.volume != needed.volume) {
-        held_.volume = 0;
-        volume_.release(); // before the next is allocated: two volumes may not fit
-        volumeBytes_ = 0;
-        const bool pre = plan.variant.classification == Classification::Pre;
-        if (needed.volume != 0) {
-            if (Result<void> done = updateVolume(scene, pre, caps); !done) {
-                return done;
-            }
-        }
-        held_.volume = needed.volume;
+    const bool pre = plan.variant.classification == Classification::Pre;
+    if (Result<void> done = updateVolume(scene, pre, needed.volume, caps); !done) {
+        return done;
     }
     if (held_.table != needed.table) {
         held_.table = 0;
@@ -59,22 +70,27 @@ Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const g
         }
         held_.table = needed.table;
     }
-    if (held_.skip != needed.skip) {
-        held_.skip = 0;
-        skip_.release();
-        skipBytes_ = 0;
-        skipBytes_ = 0;
-        if (needed.skip != 0) {
-            const BuiltSkip& skip = scene.skip();
-            Result<SkipTexture> made = skip.octree ? uploadOctree(*skip.octree, caps)
-                                                   : uploadFreeLengths(*skip.lengths, caps);
-            if (!made) {
-                return tl::unexpected(made.error());
-            }
-            skip_ = std::move(made->texture);
-            skipBytes_ = made->bytes;
+    return updateSkips(scene, plan, caps);
+}
+
+Result<void> GpuScene::updateSkips(const Scene& scene, const FramePlan& plan,
+                                   const gl::Caps& caps) {
+    const std::vector<const BuiltSkip*> needed = neededSkips(scene, plan);
+    std::erase_if(skips_, [&](const HeldSkip& one) {
+        return std::none_of(needed.begin(), needed.end(), [&](const BuiltSkip* skip) {
+            return skip->generation == one.generation;
+        });
+    });
+    for (const BuiltSkip* skip : needed) {
+        if (held(*skip) != nullptr) {
+            continue;
         }
-        held_.skip = needed.skip;
+        Result<SkipTexture> made = skip->octree ? uploadOctree(*skip->octree, caps)
+                                                : uploadFreeLengths(*skip->lengths, caps);
+        if (!made) {
+            return tl::unexpected(made.error());
+        }
+        skips_.push_back({skip->generation, std::move(*made)});
     }
     return {};
 }
@@ -89,21 +105,54 @@ Result<void> GpuScene::updateTable(const Scene& scene, const gl::Caps& caps) {
     return keep(table_, uploadTable(table.texels, table.wide, caps));
 }
 
-Result<void> GpuScene::updateVolume(const Scene& scene, bool pre, const gl::Caps& caps) {
+Result<void> GpuScene::updateVolume(const Scene& scene, bool pre, int generation,
+                                    const gl::Caps& caps) {
+    if (held_.volume == generation) {
+        return {};
+    }
+    held_.volume = 0;
+    volume_.release(); // before the next is allocated: two volumes may not fit
+    volumeBytes_ = 0;
+    if (generation == 0) {
+        return {};
+    }
     SLABCAST_EXPECTS(!pre || scene.classified() != nullptr, pre);
-    const std::size_t perTexel = pre ? 4 : bytesPerTexel(scene.texels().format);
-    volumeBytes_ = scene.geometry().voxelCount() * static_cast<std::int64_t>(perTexel);
-    return pre ? keep(volume_, uploadClassified(scene.classified()->texels.data(),
-                                                scene.classified()->dims, caps))
-               : keep(volume_, uploadTexels(scene.texels(), caps));
+    Result<void> done = pre ? keep(volume_, uploadClassified(scene.classified()->texels.data(),
+                                                             scene.classified()->dims, caps))
+                            : keep(volume_, uploadTexels(scene.texels(), caps));
+    if (done) {
+        const std::size_t perTexel = pre ? 4 : bytesPerTexel(scene.texels().format);
+        volumeBytes_ = scene.geometry().voxelCount() * static_cast<std::int64_t>(perTexel);
+        held_.volume = generation;
+    }
+    return done;
 }
 
-void GpuScene::bind() const {
+Result<GLuint> GpuScene::volumeTexture(const Scene& scene, bool pre, const gl::Caps& caps) {
+    const int generation = pre ? scene.lookGeneration() : scene.texelsGeneration();
+    return updateVolume(scene, pre, generation, caps).map([&] { return volume_.id(); });
+}
+
+void GpuScene::adopt(const BuiltSkip& skip, SkipTexture texture) {
+    skips_.push_back({skip.generation, std::move(texture)});
+}
+
+std::int64_t GpuScene::skipBytes() const {
+    std::int64_t bytes = 0;
+    for (const HeldSkip& one : skips_) {
+        bytes += one.texture.bytes;
+    }
+    return bytes;
+}
+
+void GpuScene::bind(const BuiltSkip& skip) const {
+    const HeldSkip* skipTexture = held(skip);
     const struct {
         GLenum target;
         GLuint id;
-    } units[] = {
-        {GL_TEXTURE_3D, volume_.id()}, {GL_TEXTURE_2D, table_.id()}, {GL_TEXTURE_3D, skip_.id()}};
+    } units[] = {{GL_TEXTURE_3D, volume_.id()},
+                 {GL_TEXTURE_2D, table_.id()},
+                 {GL_TEXTURE_3D, skipTexture != nullptr ? skipTexture->texture.texture.id() : 0}};
     for (GLuint unit = 0; unit < 3; ++unit) {
         gl::ActiveTexture(GL_TEXTURE0 + unit);
         gl::BindTexture(units[unit].target, units[unit].id);
@@ -112,8 +161,10 @@ void GpuScene::bind() const {
 }
 
 void GpuScene::forget() {
-    for (gl::Texture* texture : {&volume_, &table_, &skip_}) {
-        texture->forget();
+    volume_.forget();
+    table_.forget();
+    for (HeldSkip& one : skips_) {
+        one.texture.texture.forget();
     }
     *this = GpuScene();
 }

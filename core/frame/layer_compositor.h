@@ -1,8 +1,6 @@
 #pragma once
 
-#include "core/base/error.h"
-#include "core/gl/objects.h"
-#include "core/gl/program.h"
+#include "core/frame/fullscreen_pass.h"
 
 namespace slabcast {
 
@@ -12,13 +10,12 @@ enum class LayerConversion : std::uint8_t { None = 0, Encode = 1, Decode = 2 };
 /// Blends a layer over the bound framebuffer's viewport at (x, y), once.
 class LayerCompositor {
 public:
-    Result<void> create();
+    Result<void> create() { return pass_.create("composite", "composite.frag"); }
     void composite(GLuint texture, int x, int y, LayerConversion conversion) const;
-    void forget();
+    void forget() { pass_.forget(); }
 
 private:
-    gl::Program program_;
-    gl::VertexArray noVertices_;
+    FullscreenPass pass_;
 };
 
 } // namespace slabcast

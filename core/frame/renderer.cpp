@@ -1,15 +1,17 @@
 #include "core/frame/renderer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/frame/gpu_scene.h"
 #include "core/frame/layer_compositor.h"
+#include "core/frame/plane_blending.h"
+#include "core/frame/saturation_marks.h"
 #include "core/frame/stack_drawer.h"
 #include "core/gl/api.h"
 #include "core/gl/color_targets.h"
 #include "core/gl/state_guard.h"
+#include "core/skip/gpu_built_skip.h"
 
 namespace slabcast {
 
@@ -25,35 +27,26 @@ bool fits(const FramePlan& plan, const Look& look) {
            (look.shading.has_value() || !plan.variant.shaded);
 }
 
-/// The framebuffer may be blended into directly where it holds what is composited.
-bool needsLayer(CompositingSpace space, TargetEncoding encoding) {
-    return !(space == CompositingSpace::Display && encoding == TargetEncoding::Encoded) &&
-           !(space == CompositingSpace::Linear && encoding == TargetEncoding::Linear);
-}
-
+/// To a target that is not in the space, and to an sRGB format, which encodes by itself.
 LayerConversion conversionTo(CompositingSpace space, TargetEncoding encoding) {
     if (space == CompositingSpace::Display) {
-        return LayerConversion::Decode; // a linear target, or an sRGB format that encodes by itself
+        return encoding == TargetEncoding::Encoded ? LayerConversion::None
+                                                   : LayerConversion::Decode;
     }
     return encoding == TargetEncoding::Encoded ? LayerConversion::Encode : LayerConversion::None;
 }
 
-void setBlending(GLenum source, GLenum destination) {
-    for (const GLenum off : {GL_CULL_FACE, GL_DEPTH_TEST, GL_DITHER, GL_RASTERIZER_DISCARD,
-                             GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE, GL_SAMPLE_MASK,
-                             GL_SCISSOR_TEST, GL_STENCIL_TEST}) {
-        gl::Disable(off);
-    }
-    gl::DepthMask(GL_FALSE);
-    gl::ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    gl::Enable(GL_BLEND);
-    gl::BlendEquation(GL_FUNC_ADD);
-    gl::BlendFunc(source, destination);
+/// The framebuffer may be blended into directly where it holds what is composited: planes over what
+/// is there. An sRGB format encodes at every blend.
+bool needsLayer(const FramePlan& plan, TargetEncoding encoding) {
+    return plan.order == BlendOrder::FrontToBack || encoding == TargetEncoding::SrgbFormat ||
+           conversionTo(plan.space, encoding) != LayerConversion::None;
 }
 
 std::vector<VisibleBox> visibleBoxesOf(const Scene& scene, double layerLengthMm) {
     const BuiltSkip& skip = scene.skip();
-    return visibleBoxes(*skip.lengths, scene.geometry(), layerLengthMm);
+    return skip.octree ? visibleBoxes(*skip.octree, skip.test, scene.geometry(), layerLengthMm)
+                       : visibleBoxes(*skip.lengths, scene.geometry(), layerLengthMm);
 }
 
 } // namespace
@@ -63,19 +56,31 @@ struct Renderer::State {
     GpuScene textures;
     StackDrawer drawer;
     LayerCompositor compositor;
+    SaturationMarks marks;
     gl::ColorTargets layer, counters;
-    bool created = false; // the objects that do not depend on a scene
+    std::optional<GpuSkipBuilder> builder; // made when it is first needed
+    bool created = false;                  // the objects that do not depend on a scene
     std::map<ShaderVariant, gl::Program> programs;
     // What visible boxes were made for.
     int boxesOfLook = -1;
+    int boxesOfSkip = -1;
     double boxesOfLengthMm = 0.0;
     std::vector<VisibleBox> boxes;
 
     Result<void> createFixed();
     Result<const gl::Program*> program(const ShaderVariant& variant);
     void updateBoxes(const Scene& scene, double layerLengthMm);
-    void drawStack(const Scene& scene, const FramePlan& plan, const View& view,
-                   const Viewport& viewport, const gl::Program& program);
+    /// Readies the view's planes for drawing; returns the runs to draw them in.
+    std::vector<PlaneRun> beginStack(const Scene& scene, const FramePlan& plan, const View& view,
+                                     const Viewport& viewport, int planesPerRun);
+    Result<void> resizeLayer(const FramePlan& plan, const Viewport& viewport);
+    void drawRun(const gl::ColorTargets& into, const FramePlan& plan, glm::ivec2 size,
+                 const gl::Program& program, const PlaneRun& run) const;
+    /// Marks what the layer has of saturated pixels in the depth of `marked`.
+    void mark(const gl::ColorTargets& marked, const FramePlan& plan, glm::ivec2 size) const;
+    Result<void> drawLayer(const Scene& scene, const FramePlan& plan, const ViewTarget& target,
+                           const gl::Program& program);
+    Result<void> count(const Scene& scene, const FramePlan& plan, const ViewTarget& target);
 };
 
 Result<void> Renderer::State::createFixed() {
@@ -109,16 +114,19 @@ Result<const gl::Program*> Renderer::State::program(const ShaderVariant& variant
 void Renderer::State::updateBoxes(const Scene& scene, double layerLengthMm) {
     // Rounded up to a power of two: views of slightly different width share their boxes.
     const double length = std::exp2(std::ceil(std::log2(layerLengthMm)));
-    if (boxesOfLook == scene.lookGeneration() && boxesOfLengthMm == length) {
+    if (boxesOfLook == scene.lookGeneration() && boxesOfSkip == scene.skip().generation &&
+        boxesOfLengthMm == length) {
         return;
     }
     boxes = visibleBoxesOf(scene, length);
     boxesOfLook = scene.lookGeneration();
+    boxesOfSkip = scene.skip().generation;
     boxesOfLengthMm = length;
 }
 
-void Renderer::State::drawStack(const Scene& scene, const FramePlan& plan, const View& view,
-                                const Viewport& viewport, const gl::Program& program) {
+std::vector<PlaneRun> Renderer::State::beginStack(const Scene& scene, const FramePlan& plan,
+                                                  const View& view, const Viewport& viewport,
+                                                  int planesPerRun) {
     const RayFrame frame = makeRayFrame(view, viewport, scene.geometry(), plan.lattice);
     SLABCAST_EXPECTS(!plan.tighten || scene.skip().exists(), plan.tighten);
     ProxyStack stack;
@@ -132,9 +140,9 @@ void Renderer::State::drawStack(const Scene& scene, const FramePlan& plan, const
     } else {
         stack = sphereStack(frame, view.frustum, plan.planes, plan.layersPerPlane);
     }
-    program.use();
-    textures.bind();
-    drawer.draw(makeFrameBlock(frame, scene, plan), stack, view.frustum, plan.tighten);
+    textures.bind(scene.skip());
+    drawer.begin(makeFrameBlock(frame, scene, plan), stack, view.frustum, plan.tighten);
+    return runsOf(plan.order, stack, planesPerRun);
 }
 
 Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -152,11 +160,42 @@ Result<Renderer> Renderer::create(const gl::Caps& caps) {
     return Renderer(std::move(state));
 }
 
+Result<void> Renderer::buildSkip(Scene& scene, const SkipOptions& options) {
+    const gl::StateGuard guard;
+    if (!state_->builder) {
+        Result<GpuSkipBuilder> made = GpuSkipBuilder::create(state_->caps);
+        if (!made) {
+            return tl::unexpected(made.error());
+        }
+        state_->builder = std::move(*made);
+    }
+    const bool pre = scene.classified() != nullptr;
+    const Result<GLuint> volume = state_->textures.volumeTexture(scene, pre, state_->caps);
+    if (!volume) {
+        return tl::unexpected(volume.error());
+    }
+    return scene.buildSkip([&](const SkipSource& source) -> Result<BuiltSkip> {
+        const Result<GpuVoxels> voxels =
+            pre ? gpuVoxelsOfAlpha(*volume, scene.geometry().dims)
+                : gpuVoxels(*volume, scene.texels().format, source.codes);
+        if (!voxels) {
+            return tl::unexpected(voxels.error());
+        }
+        return buildSkipOnGpu(*state_->builder, *voxels, source, options)
+            .map([&](GpuBuiltSkip&& built) {
+                state_->textures.adopt(built.skip, std::move(built.texture));
+                return std::move(built.skip);
+            });
+    });
+}
+
 Result<void> Renderer::prepare(const Scene& scene, const FramePlan& plan) {
     if (plan.drawsNothing) {
         const gl::StateGuard guard;
-        state_->layer = {};
-        state_->counters = {};
+        if (scene.live() == nullptr) { // else the TF may be another one in the next frame
+            state_->layer = {};
+            state_->counters = {};
+        }
         return state_->textures.update(scene, plan, state_->caps);
     }
     if (!fits(plan, scene.look())) {
@@ -171,8 +210,62 @@ Result<void> Renderer::prepare(const Scene& scene, const FramePlan& plan) {
     if (Result<void> done = state_->textures.update(scene, plan, state_->caps); !done) {
         return done;
     }
+    if (plan.planesPerMark > 0) {
+        if (Result<void> done = state_->marks.create(); !done) {
+            return done;
+        }
+    }
     const Result<const gl::Program*> program = state_->program(plan.variant);
     return program ? Result<void>{} : tl::unexpected(program.error());
+}
+
+Result<void> Renderer::State::resizeLayer(const FramePlan& plan, const Viewport& v) {
+    std::vector<GLenum> formats{glFormat(plan.target)};
+    if (plan.planesPerMark > 0) {
+        formats.push_back(GL_DEPTH_COMPONENT16);
+    }
+    // Only ever grows: views of different sizes share it without a new one in every frame.
+    return layer.resize(std::max(v.width, layer.width()), std::max(v.height, layer.height()),
+                        formats);
+}
+
+void Renderer::State::drawRun(const gl::ColorTargets& into, const FramePlan& plan, glm::ivec2 size,
+                              const gl::Program& program, const PlaneRun& run) const {
+    gl::BindFramebuffer(GL_FRAMEBUFFER, into.framebuffer());
+    gl::Viewport(0, 0, size.x, size.y);
+    if (plan.planesPerMark > 0) {
+        SaturationMarks::useForPlanes();
+    }
+    drawer.draw(program, run);
+}
+
+void Renderer::State::mark(const gl::ColorTargets& marked, const FramePlan& plan,
+                           glm::ivec2 size) const {
+    marks.mark(layer.texture(0), marked.depth(), size, saturatedAlpha(plan));
+}
+
+Result<void> Renderer::State::drawLayer(const Scene& scene, const FramePlan& plan,
+                                        const ViewTarget& target, const gl::Program& program) {
+    const Viewport& v = target.viewport;
+    const glm::ivec2 size(v.width, v.height);
+    if (Result<void> done = resizeLayer(plan, v); !done) {
+        return done;
+    }
+    usePlaneBlending(plan.order);
+    layer.begin();
+    const std::vector<PlaneRun> runs =
+        beginStack(scene, plan, target.view, {0, 0, v.width, v.height}, plan.planesPerMark);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        if (i > 0) {
+            mark(layer, plan, size);
+        }
+        drawRun(layer, plan, size, program, runs[i]);
+    }
+    useBlending(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    gl::BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+    gl::Viewport(v.x, v.y, v.width, v.height);
+    compositor.composite(layer.texture(0), v.x, v.y, conversionTo(plan.space, target.encoding));
+    return {};
 }
 
 Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
@@ -189,71 +282,118 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
         if (v.width <= 0 || v.height <= 0) {
             continue; // a window made small
         }
-        setBlending(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-        if (!needsLayer(plan.space, target.encoding)) {
-            gl::BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-            gl::Viewport(v.x, v.y, v.width, v.height);
-            state_->drawStack(scene, plan, target.view, v, program->second);
+        if (needsLayer(plan, target.encoding)) {
+            if (Result<void> done = state_->drawLayer(scene, plan, target, program->second);
+                !done) {
+                return done;
+            }
             continue;
         }
-        // Only ever grows: views of different sizes share it without a new one in every frame.
-        gl::ColorTargets& layer = state_->layer;
-        if (Result<void> done =
-                layer.resize(std::max(v.width, layer.width()), std::max(v.height, layer.height()),
-                             {glFormat(plan.target)});
-            !done) {
-            return done;
-        }
-        layer.begin();
-        gl::Viewport(0, 0, v.width, v.height);
-        state_->drawStack(scene, plan, target.view, {0, 0, v.width, v.height}, program->second);
+        usePlaneBlending(plan.order);
         gl::BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
         gl::Viewport(v.x, v.y, v.width, v.height);
-        state_->compositor.composite(layer.texture(0), v.x, v.y,
-                                     conversionTo(plan.space, target.encoding));
+        for (const PlaneRun& run : state_->beginStack(scene, plan, target.view, v, 0)) {
+            state_->drawer.draw(program->second, run);
+        }
     }
     return {};
 }
 
-Result<WorkCounters> Renderer::countWork(const Scene& scene, const FramePlan& plan,
-                                         std::span<const ViewTarget> views) {
+/// Counts run by run. What is left out behind a run depends on the picture so far, so that the
+/// picture is drawn beside.
+Result<void> Renderer::State::count(const Scene& scene, const FramePlan& plan,
+                                    const ViewTarget& target) {
+    const Viewport& v = target.viewport;
+    const glm::ivec2 size(v.width, v.height);
+    const bool marked = plan.planesPerMark > 0;
+    const bool needsPicture = marked || plan.variant.fetchesTarget;
+    ShaderVariant counting = plan.variant;
+    counting.counts = true;
+    const Result<const gl::Program*> counts = program(counting);
+    const Result<const gl::Program*> colours = needsPicture ? program(plan.variant) : counts;
+    if (!counts || !colours) {
+        return tl::unexpected(counts ? colours.error() : counts.error());
+    }
+    std::vector<GLenum> formats{GL_RGBA32F, GL_RGBA32F};
+    formats.resize(marked ? 3 : 2, GL_DEPTH_COMPONENT16);
+    Result<void> resized = counters.resize(v.width, v.height, formats);
+    if (resized && needsPicture) {
+        resized = resizeLayer(plan, v);
+    }
+    if (!resized) {
+        return resized;
+    }
+    usePlaneBlending(plan.order); // before what clears
+    counters.begin();
+    if (needsPicture) {
+        layer.begin();
+    }
+    const std::vector<PlaneRun> runs =
+        beginStack(scene, plan, target.view, {0, 0, v.width, v.height},
+                   plan.variant.fetchesTarget ? 1 : plan.planesPerMark);
+    for (const PlaneRun& run : runs) {
+        useBlending(GL_ONE, GL_ONE);
+        if (needsPicture) {
+            gl::ActiveTexture(GL_TEXTURE0 + StackDrawer::kLayerUnit);
+            gl::BindTexture(GL_TEXTURE_2D, layer.texture(0));
+            gl::BindSampler(StackDrawer::kLayerUnit, 0);
+        }
+        drawRun(counters, plan, size, **counts, run);
+        if (!needsPicture || &run == &runs.back()) {
+            continue;
+        }
+        usePlaneBlending(plan.order);
+        drawRun(layer, plan, size, **colours, run);
+        if (marked) {
+            mark(layer, plan, size);
+            mark(counters, plan, size);
+        }
+    }
+    return {};
+}
+
+Result<std::vector<PixelWork>> Renderer::workPerPixel(const Scene& scene, const FramePlan& plan,
+                                                      const ViewTarget& target) {
     if (!state_->caps.floatBlend) {
         return fail(ErrorCode::DeviceUnsupported,
                     "work cannot be counted on this device: it does not blend float32 "
                     "targets (GL_EXT_float_blend)");
     }
-    WorkCounters sums;
-    if (plan.drawsNothing) {
-        return sums;
+    const Viewport& v = target.viewport;
+    std::vector<PixelWork> work(static_cast<std::size_t>(std::max(v.width, 0)) *
+                                std::max(v.height, 0));
+    if (plan.drawsNothing || work.empty()) {
+        return work;
     }
     const gl::StateGuard guard;
-    ShaderVariant counting = plan.variant;
-    counting.counts = true;
-    const Result<const gl::Program*> program = state_->program(counting);
-    if (!program) {
-        return tl::unexpected(program.error());
+    if (Result<void> done = state_->count(scene, plan, target); !done) {
+        return tl::unexpected(done.error());
     }
+    const std::vector<glm::vec4> layers = state_->counters.read(0);
+    const std::vector<glm::vec4> fetches = state_->counters.read(1);
+    for (std::size_t i = 0; i < work.size(); ++i) {
+        work[i] = {.fragments = layers[i].x,
+                   .layersEvaluated = layers[i].z,
+                   .layersSkipped = layers[i].y - layers[i].z,
+                   .volumeFetches = fetches[i].x,
+                   .skipFetches = layers[i].w,
+                   .stretches = fetches[i].y,
+                   .blocksVisited = fetches[i].z};
+    }
+    return work;
+}
+
+Result<WorkCounters> Renderer::countWork(const Scene& scene, const FramePlan& plan,
+                                         std::span<const ViewTarget> views) {
+    WorkCounters sums;
     for (const ViewTarget& target : views) {
-        const int width = target.viewport.width;
-        const int height = target.viewport.height;
-        if (Result<void> done = state_->counters.resize(width, height, {GL_RGBA32F, GL_RGBA32F});
-            !done) {
-            return tl::unexpected(done.error());
+        const Result<std::vector<PixelWork>> work = workPerPixel(scene, plan, target);
+        if (!work) {
+            return tl::unexpected(work.error());
         }
-        setBlending(GL_ONE, GL_ONE);
-        state_->counters.begin();
-        state_->drawStack(scene, plan, target.view, {0, 0, width, height}, **program);
-        std::array<glm::dvec4, 2> total{};
-        for (std::size_t k = 0; k < total.size(); ++k) {
-            for (const glm::vec4& pixel : state_->counters.read(k)) {
-                total[k] += glm::dvec4(pixel);
-            }
+        for (const PixelWork& pixel : *work) {
+            sums += pixel;
         }
-        sums.fragments += static_cast<std::int64_t>(total[0].x);
-        sums.layersEvaluated += static_cast<std::int64_t>(total[0].z);
-        sums.layersSkipped += static_cast<std::int64_t>(total[0].y - total[0].z);
-        sums.skipFetches += static_cast<std::int64_t>(total[0].w);
-        sums.volumeFetches += static_cast<std::int64_t>(total[1].x);
     }
     return sums;
 }
@@ -277,8 +417,13 @@ GpuMemory Renderer::gpuMemory() const {
 
 void Renderer::contextLost() {
     state_->textures.forget();
+    if (state_->builder) {
+        state_->builder->forget();
+        state_->builder.reset();
+    }
     state_->drawer.forget();
     state_->compositor.forget();
+    state_->marks.forget();
     state_->layer.forget();
     state_->counters.forget();
     for (auto& [variant, program] : state_->programs) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/frame/frame_plan.h"
 #include "core/frame/scene.h"
@@ -26,16 +27,35 @@ struct ViewTarget {
     TargetEncoding encoding = TargetEncoding::Encoded;
 };
 
-/// Work of one frame. A fetch is one texel address given to a texture unit (filtered or not). A
-/// layer is skipped that lies inside the box and is not evaluated: invisible, or behind opaque
-/// material.
-struct WorkCounters {
-    std::int64_t fragments = 0;
-    std::int64_t layersEvaluated = 0;
-    std::int64_t layersSkipped = 0;
-    std::int64_t volumeFetches = 0;
-    std::int64_t skipFetches = 0;
+/// Work of one pixel or of a frame. Fragments are those that are shaded: not those that a mark of
+/// saturation rejects before. A fetch is one texel address given to a texture unit (filtered or
+/// not). A layer is skipped that lies inside the box, on a plane that is shaded, and is not
+/// evaluated: invisible, or behind opaque material. A stretch is one look at the skip structure,
+/// free or not; a block is visited where it is not.
+template <class Number>
+struct Work {
+    Number fragments = 0;
+    Number layersEvaluated = 0;
+    Number layersSkipped = 0;
+    Number volumeFetches = 0;
+    Number skipFetches = 0;
+    Number stretches = 0;
+    Number blocksVisited = 0;
+
+    template <class Other>
+    Work& operator+=(const Work<Other>& other) {
+        fragments += static_cast<Number>(other.fragments);
+        layersEvaluated += static_cast<Number>(other.layersEvaluated);
+        layersSkipped += static_cast<Number>(other.layersSkipped);
+        volumeFetches += static_cast<Number>(other.volumeFetches);
+        skipFetches += static_cast<Number>(other.skipFetches);
+        stretches += static_cast<Number>(other.stretches);
+        blocksVisited += static_cast<Number>(other.blocksVisited);
+        return *this;
+    }
 };
+using WorkCounters = Work<std::int64_t>;
+using PixelWork = Work<float>; // exact: float32 counts to 2^24
 
 /// Bytes of what the renderer keeps on the GPU.
 struct GpuMemory {
@@ -55,6 +75,11 @@ public:
     Renderer& operator=(Renderer&&) noexcept;
     ~Renderer();
 
+    /// Builds the look's skip structure on the GPU, in place of what the scene has; waits for the
+    /// host's copy of it. Restores the GL state (gl::StateGuard). Fails: DeviceUnsupported where
+    /// the device lacks the capacity, and as buildSkipOnGpu(): Scene::setLook() builds on the CPU.
+    Result<void> buildSkip(Scene& scene, const SkipOptions& options);
+
     /// Brings textures and shaders up to date with scene and plan. Nothing is done for what is
     /// there already; textures that the plan does not use are released (all, where it draws
     /// nothing), compiled shaders are kept.
@@ -64,16 +89,21 @@ public:
     Result<void> prepare(const Scene& scene, const FramePlan& plan);
 
     /// Blends the volume over what each target holds, as premultiplied colour. One instanced draw
-    /// per view; a layer of our own in between only where the target's encoding is not the
-    /// compositing space. Restores the GL state that gl::StateGuard documents. Contract: the last
-    /// prepare() was for this scene, its look and this plan, or one that uses the same textures.
-    /// Fails: DeviceOutOfMemory (a layer of our own).
+    /// per view, or one between marks of saturation; a layer of our own in between only where
+    /// planes are drawn front to back or the target's encoding is not the compositing space. With
+    /// termination, colour and opacity are off by at most what the termination opacity lacks of 1,
+    /// in either order, beside the rounding of each plane's blending. Restores the GL state that
+    /// gl::StateGuard documents. Contract: the last prepare() was for this scene, its look and this
+    /// plan, or one that uses the same textures. Fails: DeviceOutOfMemory (a layer of our own).
     Result<void> draw(const Scene& scene, const FramePlan& plan, std::span<const ViewTarget> views);
 
     /// Draws the same frame once more, counting instead of colouring, and waits for the sums.
     /// Fails: DeviceUnsupported where float32 targets do not blend (GL_EXT_float_blend).
     Result<WorkCounters> countWork(const Scene& scene, const FramePlan& plan,
                                    std::span<const ViewTarget> views);
+    /// The same of one view, pixel by pixel of its viewport, rows from the bottom up.
+    Result<std::vector<PixelWork>> workPerPixel(const Scene& scene, const FramePlan& plan,
+                                                const ViewTarget& target);
 
     /// Time that compiling the plan's variant took; 0 before prepare().
     double compileMs(const ShaderVariant& variant) const;

@@ -23,7 +23,7 @@ Scene Scene::create(Volume volume, TexelFormat format, double filterErrorOfFullS
     scene.geometry_ = volume.geometry;
     scene.integerData_ = !isFloatingPoint(volume.type) && volume.rescaleSlope == 1.0;
     scene.statistics_ = computeStatistics(volume);
-    scene.texels_ = encodeTexels(volume, scene.statistics_, format);
+    scene.texels_ = std::make_shared<Texels>(encodeTexels(volume, scene.statistics_, format));
     scene.texelsGeneration_ = nextGeneration();
     scene.filterErrorSampled_ = filterErrorOfFullScale * fullScaleSampled(format);
     return scene;
@@ -39,57 +39,121 @@ Result<void> Scene::setLook(const Look& look, const SkipOptions& skip, int maxTa
     if (look_.shading && look_.shading->gradientFloorPerMm <= 0.0) {
         look_.shading->gradientFloorPerMm = defaultGradientFloorPerMm();
     }
+    live_.reset();
     lookGeneration_ = nextGeneration();
-    buildTable(maxTableSize);
+    maxTableSize_ = maxTableSize;
+    buildTable();
     classified_.reset();
     if (look_.classification == Classification::Pre) {
         ClassifySettings settings;
         if (look_.shading) {
             settings.light = BakedLight{look_.bakedLightDirection, *look_.shading};
         }
-        classified_ = classify(texels_, geometry_, table(), settings);
+        classified_ = classify(*texels_, geometry_, table(), settings);
     }
     skip_ = {.options = {.structure = SkipStructure::None}};
-    return skip.structure == SkipStructure::None ? Result<void>{} : buildSkip(skip);
+    return skip.structure == SkipStructure::None
+               ? Result<void>{}
+               : buildSkip([&](const SkipSource& s) { return slabcast::buildSkip(s, skip); });
 }
 
-void Scene::buildTable(int maxTableSize) {
+void Scene::buildTable() {
     const VolumeStatistics& s = statistics_;
     if (look_.classification == Classification::Preintegrated) {
         preintegrated_ = makePreintegratedTable(look_.tf, s.min, s.max, integerData_, look_.space,
-                                                std::min(maxTableSize, kMaxPreintegratedSize));
+                                                std::min(maxTableSize_, kMaxPreintegratedSize));
         table_ = {};
     } else {
-        table_ = makeTable(look_.tf, s.min, s.max, integerData_, look_.space, maxTableSize);
+        table_ = makeTable(look_.tf, s.min, s.max, integerData_, look_.space, maxTableSize_);
         preintegrated_.reset();
     }
 }
 
-Result<void> Scene::buildSkip(const SkipOptions& options) {
-    const bool pre = classified_.has_value();
-    if (!pre && !codes_) {
-        codes_ = std::make_shared<TexelCodes>(encodeCodes(texels_));
+void Scene::needCodes() {
+    if (!codes_) {
+        codes_ = std::make_shared<const TexelCodes>(encodeCodes(*texels_));
     }
-    const TexelCodes alpha = pre ? alphaCodes(*classified_) : TexelCodes{};
-    const CellVisibility visibility =
-        pre ? cellVisibilityOfAlpha(alpha)
-            : cellVisibility(*codes_, texels_, table(), filterErrorSampled_);
-    Result<BuiltSkip> built =
-        slabcast::buildSkip({pre ? alpha : *codes_, visibility, geometry_}, options);
-    if (!built) {
-        return tl::unexpected(built.error());
+}
+
+CellVisibility Scene::visibility() const {
+    return cellVisibility(*codes_, *texels_, table(), filterErrorSampled_);
+}
+
+Result<void> Scene::buildSkip(const SkipBuild& build) {
+    SLABCAST_EXPECTS(!live_, lookGeneration_);
+    const auto from = [&](const TexelCodes& codes, const CellVisibility& visible) {
+        return build({codes, *texels_, visible, geometry_}).map([&](BuiltSkip&& built) {
+            skip_ = std::move(built);
+        });
+    };
+    if (classified_) {
+        const TexelCodes alpha = alphaCodes(*classified_);
+        return from(alpha, cellVisibilityOfAlpha(alpha));
     }
-    skip_ = std::move(*built);
-    return {};
+    needCodes();
+    return from(*codes_, visibility());
+}
+
+Result<void> Scene::startEditing(const LiveOptions& options) {
+    if (classified_) {
+        return fail(ErrorCode::InvalidArgument,
+                    "pre-classified texels hold the transfer function, which cannot be edited in "
+                    "them: take post or pre-integrated classification");
+    }
+    needCodes();
+    return LiveSkip::start({codes_, texels_, geometry_}, options, visibility(), skip())
+        .map([&](LiveSkip&& live) {
+            live_ = std::move(live);
+            skip_ = {.options = {.structure = SkipStructure::None}};
+        });
+}
+
+Result<void> Scene::edit(TransferFunction tf) {
+    SLABCAST_EXPECTS(live_.has_value(), lookGeneration_);
+    return validated(std::move(tf)).map([&](TransferFunction&& valid) {
+        look_.tf = std::move(valid);
+        lookGeneration_ = nextGeneration();
+        buildTable();
+        live_->edit(visibility());
+    });
+}
+
+LiveProgress Scene::work(double budgetMs) {
+    SLABCAST_EXPECTS(live_.has_value(), lookGeneration_);
+    return live_->work(budgetMs);
+}
+
+void Scene::stopEditing() {
+    if (live_) {
+        skip_ = live_->current();
+        live_.reset();
+    }
+}
+
+std::vector<const BuiltSkip*> Scene::residentSkips() const {
+    if (live_) {
+        return {&live_->always(), &live_->settled()};
+    }
+    return {&skip_};
+}
+
+std::vector<Scene> Scene::withEachServing() const {
+    SLABCAST_EXPECTS(live_.has_value(), lookGeneration_);
+    std::vector<Scene> scenes;
+    for (LiveSkip& live : live_->eachServing()) {
+        scenes.push_back(*this);
+        scenes.back().live_ = std::move(live);
+    }
+    return scenes;
 }
 
 SceneFacts Scene::facts() const {
     SceneFacts facts;
     facts.sphere = geometry_.boundingSphere();
     facts.smallestVoxelEdgeMm = geometry_.smallestVoxelEdgeMm();
-    facts.exactField = isExact(texels_.format);
-    facts.skip = skip_.options;
-    facts.occupiedFraction = skip_.occupiedFraction;
+    facts.exactField = isExact(texels_->format);
+    facts.skip = skip().options;
+    facts.occupiedFraction = skip().occupiedFraction;
     const std::vector<glm::vec4>& texels = table().texels;
     facts.oneMaterial =
         std::adjacent_find(texels.begin(), texels.end(), std::not_equal_to<>()) == texels.end();
@@ -101,7 +165,7 @@ SceneFacts Scene::facts() const {
     facts.visibleColorRange =
         visibleColorRange(look_.tf, statistics_.min, statistics_.max, look_.space);
     facts.anythingVisible =
-        facts.maxExtinctionPerMm > 0.0 && (!skip_.exists() || skip_.occupiedFraction > 0.0);
+        facts.maxExtinctionPerMm > 0.0 && (!skip().exists() || skip().occupiedFraction > 0.0);
     return facts;
 }
 

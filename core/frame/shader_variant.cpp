@@ -21,23 +21,34 @@ constexpr std::array<ClassificationInfo, 3> kClassifications = {{
 /// The files of one form of skipping; what a form does not include is null.
 struct SkipFiles {
     const char* skip;
-    const char* box;
     const char* node;
 };
 
 constexpr std::array<SkipFiles, 6> kSkipFiles = {{
-    {"skip_none.glsl", nullptr, nullptr},
-    {"skip_proximity.glsl", nullptr, nullptr},
-    {"skip_within_box.glsl", "box_grown.glsl", nullptr},
-    {"skip_within_box.glsl", "box_octree.glsl", "node_bits.glsl"},
-    {"skip_within_box.glsl", "box_octree.glsl", "node_wide.glsl"},
-    {"skip_within_box.glsl", "box_octree.glsl", "node_range.glsl"},
+    {"skip_none.glsl", nullptr},
+    {"skip_proximity.glsl", nullptr},
+    {"skip_boxes.glsl", nullptr},
+    {"skip_octree.glsl", "node_bits.glsl"},
+    {"skip_octree.glsl", "node_wide.glsl"},
+    {"skip_octree.glsl", "node_range.glsl"},
 }};
 
 const ClassificationInfo& infoOf(Classification classification) {
     const auto index = static_cast<std::size_t>(classification);
     SLABCAST_EXPECTS(index < kClassifications.size(), index);
     return kClassifications[index];
+}
+
+const char* targetFileOf(const ShaderVariant& v) {
+    constexpr const char* kFiles[2][2] = {{"target_blended.glsl", "target_fetched.glsl"},
+                                          {"target_counted.glsl", "target_counted_behind.glsl"}};
+    return kFiles[v.counts ? 1 : 0][v.fetchesTarget ? 1 : 0];
+}
+
+const char* terminateFileOf(const ShaderVariant& v) {
+    return v.fetchesTarget ? "terminate_across.glsl"
+           : v.terminates  ? "terminate_early.glsl"
+                           : "terminate_none.glsl";
 }
 
 } // namespace
@@ -55,10 +66,10 @@ int unrollLengthFor(int layersPerPlane) {
 std::string name(const ShaderVariant& v) {
     std::string text = name(v.classification);
     text += v.skip == SkipForm::None ? "" : std::string("+") + name(v.skip);
-    text += v.topDown ? "+topdown" : "";
     text += v.shaded ? "+shaded" : "";
     text += v.exactField ? "+exact" : "";
     text += v.terminates ? "+terminate" : "";
+    text += v.fetchesTarget ? "+fetch" : "";
     text += v.counts ? "+counts" : "";
     text += v.halfGroups != 0 ? "+half" + std::to_string(v.halfGroups) : "";
     return text + (v.unroll == 0 ? "/loop" : "/unroll" + std::to_string(v.unroll));
@@ -74,10 +85,10 @@ std::vector<ShaderVariant> allVariants() {
                 const auto bit = [bits](int k) { return (bits >> k & 1) != 0; };
                 ShaderVariant v{.classification = info.classification,
                                 .skip = static_cast<SkipForm>(bits >> 5),
-                                .topDown = bit(0),
                                 .shaded = bit(1),
                                 .exactField = bit(2),
                                 .terminates = bit(3),
+                                .fetchesTarget = bit(0),
                                 .unroll = length,
                                 .counts = bit(4)};
                 if (!v.valid()) {
@@ -101,20 +112,17 @@ Result<ShaderPair> shaderText(const ShaderVariant& v) {
         {"COUNT_FILE", v.counts ? "count_work.glsl" : "count_none.glsl"},
         {"MEDIUM_FILE", v.halfGroups == 0 ? "medium_exact.glsl" : "medium_half.glsl"},
         {"HALF_GROUPS", std::to_string(v.halfGroups)},
-        {"WALK_FILE", v.topDown ? "walk_topdown.glsl" : "walk_bidirectional.glsl"},
         {"FIELD_FILE", v.exactField ? "field_exact.glsl" : "field_filtered.glsl"},
         {"SHADE_FILE", v.shaded ? "shade_phong.glsl" : "shade_none.glsl"},
         {"CLASSIFY_FILE", infoOf(v.classification).shaderFile},
-        {"TERMINATE_FILE", v.terminates ? "terminate_early.glsl" : "terminate_none.glsl"},
+        {"TARGET_FILE", targetFileOf(v)},
+        {"TERMINATE_FILE", terminateFileOf(v)},
         {"MARCH_FILE", v.unroll == 0 ? "march_loop.glsl" : "march_unrolled.glsl"},
     };
     const SkipFiles& files = kSkipFiles[static_cast<std::size_t>(v.skip)];
-    const std::pair<const char*, const char*> skipFiles[] = {
-        {"SKIP_FILE", files.skip}, {"BOX_FILE", files.box}, {"NODE_FILE", files.node}};
-    for (const auto& [key, file] : skipFiles) {
-        if (file != nullptr) {
-            defines[key] = file;
-        }
+    defines["SKIP_FILE"] = files.skip;
+    if (files.node != nullptr) {
+        defines["NODE_FILE"] = files.node;
     }
     if (v.unroll > 0) {
         std::string layers;

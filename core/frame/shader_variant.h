@@ -37,11 +37,12 @@ int unrollLengthFor(int layersPerPlane);
 /// | classification | Post: field + table            | Pre: one RGBA8 texture, colours baked;         |
 /// |                |                                | Preintegrated: field + table of both ends      |
 /// | skip           | None                           | one more texture, tests per segment and        |
-///                                                   | stretch: Balls, Boxes, or an octree's nodes    |
-/// | topDown        | octrees: on from the last test | from the initial level at every test           |
+/// |                |                                | stretch: Balls, Boxes, or an octree's nodes    |
 /// | shaded         | colour as classified           | 6 more fields per visible sample (Post only)   |
 /// | exactField     | texture unit's filter          | 8 fetches, float32 (not Pre)                   |
 /// | terminates     | every layer                    | leaves when nearly opaque                      |
+/// | fetchesTarget  | sees its own segment           | sees what is drawn before it and leaves when   |
+/// |                |                                | both together are (front to back; terminates)  |
 /// | unroll         | 0: loop                        | layers written out, from kUnrollLengths        |
 /// | counts         | draws                          | writes work counters instead of colour         |
 /// | halfGroups     | 0: float32                     | these rounded to fp16: what mediump may do     |
@@ -49,10 +50,10 @@ int unrollLengthFor(int layersPerPlane);
 struct ShaderVariant {
     Classification classification = Classification::Post;
     SkipForm skip = SkipForm::None;
-    bool topDown = false;
     bool shaded = false;
     bool exactField = false;
     bool terminates = false;
+    bool fetchesTarget = false;
     int unroll = 0;
     bool counts = false;
     int halfGroups = 0; // sum of kHalf...; for measuring
@@ -73,10 +74,8 @@ struct ShaderVariant {
         const bool hasField = classification != Classification::Pre;
         const bool measured =
             halfGroups == 0 || (halfGroups > 0 && halfGroups <= kHalfAll && unroll == 0 && !counts);
-        const bool walks = skip == SkipForm::Octree || skip == SkipForm::WideOctree ||
-                           skip == SkipForm::RangeOctree;
-        return listed && measured && (walks || !topDown) && (shadable || !shaded) &&
-               (hasField || !exactField);
+        return listed && measured && (shadable || !shaded) && (hasField || !exactField) &&
+               (terminates || !fetchesTarget);
     }
 };
 

@@ -1,5 +1,6 @@
 #include "core/frame/stack_drawer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -34,6 +35,21 @@ void uploadBlock(GLuint binding, const gl::Buffer& buffer, const T* data, std::s
 
 } // namespace
 
+std::vector<PlaneRun> runsOf(BlendOrder order, const ProxyStack& stack, int planesPerRun) {
+    const int planes = static_cast<int>(stack.outlines.size());
+    if (order == BlendOrder::BackToFront) {
+        return {{planes - 1, -1, planes}};
+    }
+    std::vector<PlaneRun> runs;
+    for (int first = 0, end = 0; first < planes; first = end) {
+        const int toMark =
+            planesPerRun > 0 ? planesPerRun - (stack.firstPlane + first) % planesPerRun : planes;
+        end = std::min(first + toMark, planes);
+        runs.push_back({first, 1, end - first});
+    }
+    return runs;
+}
+
 void StackDrawer::create() {
     frameBlock_ = gl::Buffer::make("frame block");
     outlineBlock_ = gl::Buffer::make("plane outlines");
@@ -61,19 +77,17 @@ void StackDrawer::connect(const gl::Program& program) {
     }
     program.use();
     const char* const samplers[] = {"volumeTexels", "transferTable",
-                                    "skipTexels"}; // GpuScene::bind()
-    for (int unit = 0; unit < 3; ++unit) {
+                                    "skipTexels", // up to here GpuScene::bind()
+                                    "layerBefore"};
+    for (int unit = 0; unit < 4; ++unit) {
         gl::Uniform1i(program.uniform(samplers[unit]), unit);
     }
 }
 
-void StackDrawer::draw(FrameBlock block, const ProxyStack& stack, const Frustum& frustum,
-                       bool tight) const {
+void StackDrawer::begin(FrameBlock block, const ProxyStack& stack, const Frustum& frustum,
+                        bool tight) {
     const int planes = static_cast<int>(stack.outlines.size());
-    if (planes == 0) {
-        return;
-    }
-    const int planesPerOutline = (planes + kMaxOutlines - 1) / kMaxOutlines;
+    const int planesPerOutline = std::max(1, (planes + kMaxOutlines - 1) / kMaxOutlines);
     std::vector<glm::vec4> outlines;
     outlines.reserve(kMaxOutlines);
     const glm::dvec2 low(frustum.left, frustum.bottom);
@@ -84,14 +98,20 @@ void StackDrawer::draw(FrameBlock block, const ProxyStack& stack, const Frustum&
             glm::dvec4((o.centre - (low + high) / 2.0) / halfView, o.halfSize / halfView)));
     }
     outlines.resize(kMaxOutlines); // the block's declared size must be backed
-    block.counts = {stack.firstPlane, planes, block.counts.z, planesPerOutline};
+    block.counts = {stack.firstPlane, block.counts.y, planesPerOutline, 0};
 
     uploadBlock(kFrameBinding, frameBlock_, &block, sizeof block);
     uploadBlock(kOutlineBinding, outlineBlock_, outlines.data(),
                 outlines.size() * sizeof(glm::vec4));
+    square_ = tight || planesPerOutline > 1;
+}
+
+void StackDrawer::draw(const gl::Program& program, const PlaneRun& run) const {
+    program.use();
+    gl::Uniform2i(program.uniform("planeRun"), run.first, run.step);
     gl::BindVertexArray(vertices_.id());
-    const bool square = tight || planesPerOutline > 1;
-    gl::DrawArraysInstanced(GL_TRIANGLE_FAN, square ? kCorners : 0, square ? 4 : kCorners, planes);
+    gl::DrawArraysInstanced(GL_TRIANGLE_FAN, square_ ? kCorners : 0, square_ ? 4 : kCorners,
+                            run.count);
 }
 
 void StackDrawer::forget() {

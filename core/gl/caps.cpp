@@ -14,15 +14,12 @@ struct ExtensionFlag {
     bool Caps::*flag;
 };
 
-// Rows with one flag are alternatives.
 constexpr ExtensionFlag kFlags[] = {
     {"GL_EXT_texture_norm16", &Caps::norm16},
     {"GL_OES_texture_float_linear", &Caps::floatLinear},
     {"GL_EXT_float_blend", &Caps::floatBlend},
     {"GL_EXT_disjoint_timer_query", &Caps::timerQuery},
     {"GL_EXT_shader_framebuffer_fetch", &Caps::framebufferFetch},
-    {"GL_EXT_shader_framebuffer_fetch_non_coherent", &Caps::framebufferFetch},
-    {"GL_ARM_shader_framebuffer_fetch", &Caps::framebufferFetch},
     {"GL_OVR_multiview2", &Caps::multiview},
     {"GL_NV_image_formats", &Caps::imageFormats},
 };

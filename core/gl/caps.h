@@ -29,7 +29,7 @@ struct Caps {
     bool floatLinear = false;      // GL_OES_texture_float_linear: R32F is filtered
     bool floatBlend = false;       // GL_EXT_float_blend: 32-bit float targets blend
     bool timerQuery = false;       // GL_EXT_disjoint_timer_query
-    bool framebufferFetch = false; // GL_EXT_shader_framebuffer_fetch, coherent or not
+    bool framebufferFetch = false; // GL_EXT_shader_framebuffer_fetch, the coherent one
     bool multiview = false;        // GL_OVR_multiview2
     bool imageFormats = false;     // GL_NV_image_formats: image formats beyond the core list
     bool isSoftware = false;       // llvmpipe, softpipe, SwiftShader: timings mean little

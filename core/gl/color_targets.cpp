@@ -7,6 +7,23 @@
 
 namespace slabcast::gl {
 
+namespace {
+
+int bytesPerPixel(GLenum format) {
+    switch (format) {
+    case GL_DEPTH_COMPONENT16:
+        return 2;
+    case GL_RGBA8:
+        return 4;
+    case GL_RGBA16F:
+        return 8;
+    default:
+        return 16;
+    }
+}
+
+} // namespace
+
 Result<void> ColorTargets::resize(int width, int height, const std::vector<GLenum>& formats) {
     if (framebuffer_ && width == width_ && height == height_ && formats == formats_) {
         return {};
@@ -16,14 +33,19 @@ Result<void> ColorTargets::resize(int width, int height, const std::vector<GLenu
     BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
     std::vector<GLenum> attachments;
     for (const GLenum format : formats) {
-        const GLenum attachment = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(attachments.size());
+        const bool isDepth = format == GL_DEPTH_COMPONENT16;
+        const GLenum attachment =
+            isDepth ? GL_DEPTH_ATTACHMENT
+                    : GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(attachments.size());
         textures_.push_back(Texture::make("color target", GL_TEXTURE_2D));
         BindTexture(GL_TEXTURE_2D, textures_.back().id());
         TexStorage2D(GL_TEXTURE_2D, 1, format, width, height);
         TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
         TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
         FramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, textures_.back().id(), 0);
-        attachments.push_back(attachment);
+        if (!isDepth) {
+            attachments.push_back(attachment);
+        }
     }
     DrawBuffers(static_cast<GLsizei>(attachments.size()), attachments.data());
     width_ = width;
@@ -42,7 +64,13 @@ void ColorTargets::begin(glm::vec4 color) const {
     BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
     Viewport(0, 0, width_, height_);
     for (std::size_t k = 0; k < textures_.size(); ++k) {
-        ClearBufferfv(GL_COLOR, static_cast<GLint>(k), &color.x);
+        if (formats_[k] == GL_DEPTH_COMPONENT16) {
+            const GLfloat farthest = 1.0F;
+            DepthMask(GL_TRUE);
+            ClearBufferfv(GL_DEPTH, 0, &farthest);
+        } else {
+            ClearBufferfv(GL_COLOR, static_cast<GLint>(k), &color.x);
+        }
     }
 }
 
@@ -65,7 +93,7 @@ std::vector<glm::vec4> ColorTargets::read(std::size_t index) const {
 std::int64_t ColorTargets::bytes() const {
     std::int64_t perPixel = 0;
     for (const GLenum format : formats_) {
-        perPixel += format == GL_RGBA8 ? 4 : format == GL_RGBA16F ? 8 : 16;
+        perPixel += bytesPerPixel(format);
     }
     return framebuffer_ ? perPixel * width_ * height_ : 0;
 }

@@ -14,13 +14,13 @@ namespace slabcast::gl {
 /// back. Tested by: renderer_gl_test.cpp
 class ColorTargets {
 public:
-    /// One texture per format (GL_RGBA8, GL_RGBA16F or GL_RGBA32F). Does nothing where size and
-    /// formats are the same. Leaves the framebuffer bound. Fails: DeviceOutOfMemory (the
-    /// framebuffer is not complete).
+    /// One texture per format: GL_RGBA8, GL_RGBA16F or GL_RGBA32F, and GL_DEPTH_COMPONENT16 as the
+    /// last, if any. Does nothing where size and formats are the same. Leaves the framebuffer
+    /// bound. Fails: DeviceOutOfMemory (the framebuffer is not complete).
     Result<void> resize(int width, int height, const std::vector<GLenum>& formats);
 
     /// Makes it the draw framebuffer with its whole size as viewport, every texture filled with
-    /// `color`.
+    /// `color`, depth with 1. Leaves the depth mask on where there is depth.
     void begin(glm::vec4 color = glm::vec4(0.0F)) const;
 
     /// Waits for the GPU and reads one texture, rows from the bottom up. 8-bit values come as
@@ -31,6 +31,7 @@ public:
     int height() const { return height_; }
     GLuint framebuffer() const { return framebuffer_.id(); }
     GLuint texture(std::size_t index) const { return textures_[index].id(); }
+    GLuint depth() const { return textures_.back().id(); } // contract: there is one
     std::int64_t bytes() const;
     void forget(); // contextLost
 

@@ -20,7 +20,8 @@
     X(DeleteFramebuffers, DELETEFRAMEBUFFERS) X(DeleteProgram, DELETEPROGRAM)                     \
     X(DeleteRenderbuffers, DELETERENDERBUFFERS) X(DeleteSamplers, DELETESAMPLERS)                 \
     X(DeleteShader, DELETESHADER) X(DeleteTextures, DELETETEXTURES)                               \
-    X(DeleteVertexArrays, DELETEVERTEXARRAYS) X(DepthMask, DEPTHMASK)                             \
+    X(DeleteVertexArrays, DELETEVERTEXARRAYS) X(DepthFunc, DEPTHFUNC)                             \
+    X(DepthMask, DEPTHMASK) X(DepthRangef, DEPTHRANGEF)                                           \
     X(DetachShader, DETACHSHADER) X(Disable, DISABLE) X(DispatchCompute, DISPATCHCOMPUTE)         \
     X(DrawArrays, DRAWARRAYS) X(DrawArraysInstanced, DRAWARRAYSINSTANCED)                         \
     X(DrawBuffers, DRAWBUFFERS) X(Enable, ENABLE)                                                 \

@@ -4,11 +4,17 @@ namespace slabcast::gl {
 
 namespace {
 
-constexpr std::array<GLenum, StateGuard::kSwitches> kSwitchNames = {
-    GL_BLEND,           GL_CULL_FACE,          GL_DEPTH_TEST,
-    GL_DITHER,          GL_RASTERIZER_DISCARD, GL_SAMPLE_ALPHA_TO_COVERAGE,
-    GL_SAMPLE_COVERAGE, GL_SAMPLE_MASK,        GL_SCISSOR_TEST,
-    GL_STENCIL_TEST};
+constexpr std::array<GLenum, StateGuard::kSwitches> kSwitchNames = {GL_BLEND,
+                                                                    GL_CULL_FACE,
+                                                                    GL_DEPTH_TEST,
+                                                                    GL_DITHER,
+                                                                    GL_POLYGON_OFFSET_FILL,
+                                                                    GL_RASTERIZER_DISCARD,
+                                                                    GL_SAMPLE_ALPHA_TO_COVERAGE,
+                                                                    GL_SAMPLE_COVERAGE,
+                                                                    GL_SAMPLE_MASK,
+                                                                    GL_SCISSOR_TEST,
+                                                                    GL_STENCIL_TEST};
 
 struct PixelStore {
     GLenum name;
@@ -61,6 +67,8 @@ StateGuard::StateGuard() {
     GetFloatv(GL_COLOR_CLEAR_VALUE, clearColor_.data());
     GetBooleanv(GL_COLOR_WRITEMASK, colorMask_.data());
     GetBooleanv(GL_DEPTH_WRITEMASK, &depthMask_);
+    depthFunction_ = integer(GL_DEPTH_FUNC);
+    GetFloatv(GL_DEPTH_RANGE, depthRange_.data());
     blend_ = {integer(GL_BLEND_SRC_RGB),      integer(GL_BLEND_SRC_ALPHA),
               integer(GL_BLEND_DST_RGB),      integer(GL_BLEND_DST_ALPHA),
               integer(GL_BLEND_EQUATION_RGB), integer(GL_BLEND_EQUATION_ALPHA)};
@@ -79,6 +87,8 @@ StateGuard::~StateGuard() {
     ClearColor(clearColor_[0], clearColor_[1], clearColor_[2], clearColor_[3]);
     ColorMask(colorMask_[0], colorMask_[1], colorMask_[2], colorMask_[3]);
     DepthMask(depthMask_);
+    DepthFunc(asEnum(depthFunction_));
+    DepthRangef(depthRange_[0], depthRange_[1]);
     BlendFuncSeparate(asEnum(blend_.sourceRgb), asEnum(blend_.destinationRgb),
                       asEnum(blend_.sourceAlpha), asEnum(blend_.destinationAlpha));
     BlendEquationSeparate(asEnum(blend_.equationRgb), asEnum(blend_.equationAlpha));

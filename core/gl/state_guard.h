@@ -9,9 +9,10 @@ namespace slabcast::gl {
 /// Restores the GL state that drawing a volume touches, so that a host's own renderer finds what it
 /// left:
 /// - program, vertex array, draw and read framebuffer;
-/// - viewport, scissor box; colour mask, clear colour, depth mask; blend functions and equations;
-/// - whether blend, cull face, depth test, dither, rasterizer discard, sample alpha to coverage,
-/// sample coverage, sample mask, scissor and stencil test are enabled;
+/// - viewport, scissor box; colour mask, clear colour; depth mask, function and range;
+///   blend functions and equations;
+/// - whether blend, cull face, depth test, dither, polygon offset, rasterizer discard, sample alpha
+/// to coverage, sample coverage, sample mask, scissor and stencil test are enabled;
 /// - array, pixel unpack and pixel pack buffer, uniform buffer (generic and indexed 0 and 1, with
 /// their ranges), shader storage buffer likewise; image unit 0;
 /// - pixel pack and unpack alignment, row length, image height and skips;
@@ -33,7 +34,7 @@ public:
 
     static constexpr int kUnits = 8;
     static constexpr int kIndexedBuffers = 2; // of each kind
-    static constexpr int kSwitches = 10;
+    static constexpr int kSwitches = 11;
     static constexpr int kPixelStores = 10;
 
 private:
@@ -81,6 +82,8 @@ private:
     std::array<GLfloat, 4> clearColor_{};
     std::array<GLboolean, 4> colorMask_{};
     GLboolean depthMask_ = GL_TRUE;
+    GLint depthFunction_ = GL_LESS;
+    std::array<GLfloat, 2> depthRange_{};
     Blend blend_;
     std::array<bool, kSwitches> switches_{};
     std::array<GLint, kPixelStores> pixelStores_{};

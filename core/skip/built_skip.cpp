@@ -3,6 +3,10 @@
 #include <atomic>
 #include <chrono>
 
+#include "core/skip/blocks.h"
+#include "core/skip/boolean_octree.h"
+#include "core/skip/chebyshev.h"
+#include "core/skip/minmax_octree.h"
 #include "core/skip/proximity_cloud.h"
 #include "core/skip/skip_texture.h"
 
@@ -10,39 +14,152 @@ namespace slabcast {
 
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
+double msSince(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
 int nextGeneration() {
     static std::atomic<int> last{0};
     return ++last;
 }
 
-/// Keeps the grid, or hands on what went wrong.
-Result<void> keep(BuiltSkip& skip, Result<FreeLengths> grid) {
-    if (!grid) {
-        return tl::unexpected(grid.error());
-    }
-    const glm::i64vec3 n(grid->blocks);
-    skip.occupiedFraction =
-        static_cast<double>(grid->occupiedBlocks) / static_cast<double>(n.x * n.y * n.z);
-    skip.lengths = std::make_shared<const FreeLengths>(std::move(*grid));
-    return {};
+double fractionOf(std::int64_t occupied, glm::ivec3 blocks) {
+    const glm::dvec3 n(blocks);
+    return static_cast<double>(occupied) / (n.x * n.y * n.z);
 }
 
-Result<void> build(BuiltSkip& skip, const SkipSource& s, const CancelToken* cancel) {
-    switch (skip.options.structure) {
-    default:
-        return {};
-    case SkipStructure::Proximity:
-        return keep(skip, buildProximityCloud(s.visibility, s.geometry,
-                                              skip.options.blockEdgeVoxels, cancel));
+// Each takes one kind of data into its place.
+
+void keep(BuiltSkip& /*skip*/, std::monostate /*nothing*/) {}
+
+void keep(BuiltSkip& skip, std::shared_ptr<const FreeLengths> grid) {
+    skip.occupiedFraction = fractionOf(grid->occupiedBlocks, grid->blocks);
+    skip.lengths = std::move(grid);
+    skip.generation = nextGeneration();
+}
+
+void keep(BuiltSkip& skip, FreeLengths grid) {
+    keep(skip, std::make_shared<const FreeLengths>(std::move(grid)));
+}
+
+void keep(BuiltSkip& skip, Octree octree) {
+    skip.octree = std::make_shared<const Octree>(std::move(octree));
+    skip.generation = nextGeneration();
+}
+
+void keep(BuiltSkip& skip, BitfieldOctree built) {
+    skip.bins = std::make_shared<const ValueBins>(std::move(built.bins));
+    keep(skip, std::move(built.octree));
+}
+
+void keep(BuiltSkip& skip, PartitionedMaps maps) {
+    skip.maps = std::make_shared<const PartitionedMaps>(std::move(maps));
+}
+
+std::optional<std::array<double, 2>> sampledRange(const SkipSource& s, const SkipOptions& o) {
+    if (!o.valueRange) {
+        return std::nullopt;
     }
+    const auto sampled = [&](double value) {
+        return (value - s.texels.valueBias) / s.texels.valueScale;
+    };
+    return std::array{sampled((*o.valueRange)[0]), sampled((*o.valueRange)[1])};
+}
+
+Result<SkipData> build(const SkipSource& s, const SkipOptions& o, const CancelToken* cancel) {
+    switch (o.structure) {
+    case SkipStructure::None:
+        return SkipData();
+    case SkipStructure::Blocks:
+        return buildBlocks(s.visibility, o.blockEdgeVoxels, cancel);
+    case SkipStructure::Proximity:
+        return buildProximityCloud(s.visibility, s.geometry, o.blockEdgeVoxels, cancel);
+    case SkipStructure::Chebyshev:
+        return buildChebyshev(s.visibility, o.blockEdgeVoxels, cancel);
+    case SkipStructure::Partitioned:
+        return buildPartitionedMaps(s.codes, binsOf(s, o), o, cancel);
+    case SkipStructure::BooleanOctree:
+        return buildBooleanOctree(s.visibility, o, cancel);
+    case SkipStructure::MinMaxOctree:
+        return buildMinMaxOctree(s.codes, o, cancel);
+    case SkipStructure::BitfieldOctree:
+        return buildBitfieldOctree(s.codes, binsOf(s, o), o, cancel);
+    }
+    contractBreach(__func__, "a skip structure", static_cast<double>(o.structure));
+}
+
+NodeTest testOf(const BuiltSkip& skip, const CellVisibility& visibility) {
+    switch (skip.octree->content) {
+    case NodeContent::Occupied:
+        return booleanNodeTest();
+    case NodeContent::Range:
+        return minMaxNodeTest(visibility);
+    case NodeContent::Bits:
+        return bitfieldNodeTest(*skip.bins, visibility);
+    }
+    contractBreach(__func__, "a node's content", static_cast<double>(skip.octree->content));
+}
+
+/// Nodes that are counted when a TF changes: as many take a fraction of a millisecond.
+constexpr std::int64_t kCountedNodes = 1 << 15;
+
+int countedLevel(const Octree& octree) {
+    int level = 0;
+    const auto nodes = [&] {
+        const glm::i64vec3 n(octree.levels[level].nodes);
+        return n.x * n.y * n.z;
+    };
+    while (level < octree.coarsest() && nodes() > kCountedNodes) {
+        ++level;
+    }
+    return level;
+}
+
+double visibleFraction(const BuiltSkip& skip, int level) {
+    const auto visible = std::int64_t(visibleNodes(*skip.octree, skip.test, level).size());
+    return fractionOf(visible, skip.octree->levels[level].nodes);
+}
+
+/// What a TF changes: the merged map, or the test of nodes.
+void apply(BuiltSkip& skip, const CellVisibility& visibility) {
+    const auto start = Clock::now();
+    if (skip.maps) {
+        keep(skip, merged(*skip.maps, visibleBins(skip.maps->bins, visibility)));
+    } else if (skip.octree) {
+        skip.test = testOf(skip, visibility);
+        skip.occupiedFraction = visibleFraction(skip, countedLevel(*skip.octree));
+    }
+    skip.updateMs = msSince(start);
 }
 
 } // namespace
 
 std::int64_t gpuBytes(const BuiltSkip& skip) {
-    return skip.octree    ? gpuBytes(*skip.octree)
-           : skip.lengths ? gpuBytes(*skip.lengths)
-                          : 0;
+    return skip.octree ? gpuBytes(*skip.octree) : skip.lengths ? gpuBytes(*skip.lengths) : 0;
+}
+
+std::int64_t hostBytes(const BuiltSkip& skip) {
+    return skip.maps ? static_cast<std::int64_t>(skip.maps->distances.size()) : 0;
+}
+
+ValueBins binsOf(const SkipSource& s, const SkipOptions& o) {
+    const int count = o.structure == SkipStructure::Partitioned ? o.partitions : o.bits;
+    return valueBins(s.codes, codeRange(s.codes), count, o.separateMinimum, sampledRange(s, o));
+}
+
+BuiltSkip asBuilt(const SkipOptions& options, SkipData data, const CellVisibility& visibility) {
+    BuiltSkip skip{.options = options};
+    std::visit([&](auto& built) { keep(skip, std::move(built)); }, data);
+    apply(skip, visibility);
+    return skip;
+}
+
+BuiltSkip builtSkip(const SkipOptions& options, std::shared_ptr<const FreeLengths> grid) {
+    BuiltSkip skip{.options = options};
+    keep(skip, std::move(grid));
+    return skip;
 }
 
 Result<BuiltSkip> buildSkip(const SkipSource& source, const SkipOptions& options,
@@ -50,14 +167,19 @@ Result<BuiltSkip> buildSkip(const SkipSource& source, const SkipOptions& options
     if (Result<void> ok = check(options); !ok) {
         return tl::unexpected(ok.error());
     }
-    const auto start = std::chrono::steady_clock::now();
-    BuiltSkip skip{.options = options};
-    if (Result<void> built = build(skip, source, cancel); !built) {
-        return tl::unexpected(built.error());
+    const auto start = Clock::now();
+    Result<SkipData> data = build(source, options, cancel);
+    if (!data) {
+        return tl::unexpected(data.error());
     }
-    skip.generation = nextGeneration();
-    skip.buildMs =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    BuiltSkip skip = asBuilt(options, std::move(*data), source.visibility);
+    skip.buildMs = msSince(start);
+    return skip;
+}
+
+BuiltSkip underTransfer(BuiltSkip skip, const CellVisibility& visibility) {
+    SLABCAST_EXPECTS(!infoOf(skip.options.structure).dependsOnTransfer, skip.generation);
+    apply(skip, visibility);
     return skip;
 }
 

@@ -5,11 +5,6 @@
 
 #include <glm/glm.hpp>
 
-#include "core/base/error.h"
-#include "core/base/parallel.h"
-#include "core/skip/cell_visibility.h"
-#include "core/skip/skip_structure.h"
-
 namespace slabcast {
 
 /// What a node says of the visible cells, or values, that meet it grown by one voxel.
@@ -51,23 +46,27 @@ struct NodeTest {
     bool operator==(const NodeTest&) const = default;
 };
 
+/// A node of the content Range.
+struct NodeRange {
+    std::uint32_t least;
+    std::uint32_t greatest;
+
+    static NodeRange of(std::uint32_t word) { return {word & 0xffffU, word >> 16}; }
+    std::uint32_t word() const { return least | greatest << 16; }
+};
+
 bool isFree(const Octree& octree, const std::uint32_t* node, const NodeTest& test);
 
 /// Levels from the root down to the leaves, both counted: 1 + ceil(log2(most leaves of an axis)).
 int levelsToRoot(glm::ivec3 leaves);
 
-/// Adds the levels above the leaves, without those that an initial level leaves out from the root;
-/// the leaves remain. A node holds what its children hold. Contract: `octree` has its leaves alone.
-/// Cost: O(leaves), all cores. Fails: Internal where cancelled. Tested by: octree_test.cpp
-Result<Octree> withLevels(Octree octree, int initialLevel, const CancelToken* cancel = nullptr);
+/// Levels that are left where `initialLevel` of them are left out from the root: the leaves always.
+int keptLevels(glm::ivec3 leaves, int initialLevel);
 
 /// Nodes of a level that are not free, found from the coarsest level down. Cost: O(those, and their
-/// ancestors).
+/// ancestors). Tested by: octree_test.cpp
 std::vector<glm::ivec3> visibleNodes(const Octree& octree, const NodeTest& test, int level);
 
 std::int64_t visibleLeaves(const Octree& octree, const NodeTest& test);
-
-/// What a builder returns that was stopped.
-tl::unexpected<Error> buildCancelled();
 
 } // namespace slabcast

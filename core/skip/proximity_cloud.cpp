@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
+#include <memory>
 
 #include "core/skip/occupancy.h"
 
@@ -11,28 +11,24 @@ namespace slabcast {
 
 namespace {
 
-// Lengths are whole 256ths of a quantum, each axis' step rounded down, and squares of them fill 32
-// bits. Integers keep the transform exact: in floating point a guard against over-estimates would
-// cost a whole quantum wherever a distance is a whole number of quanta, which with cubic voxels is
-// along every axis.
-constexpr std::int64_t kUnitsPerQuantum = 256;
-constexpr std::int64_t kFar = 254 * kUnitsPerQuantum; // from here on a byte holds 255
-constexpr auto kFarSquared = std::uint32_t(kFar * kFar);
+// Integers keep the transform exact: in floating point a guard against over-estimates would cost a
+// whole quantum wherever a distance is a whole number of quanta, which with cubic voxels is along
+// every axis.
+constexpr std::int64_t kFar = ProximityUnits::kFar;
+constexpr std::uint32_t kFarSquared = ProximityUnits::kFarSquared;
 
 // Spacings and cosines come from text of about six digits: 0.6 / 0.2 is meant as 3, and a cosine of
 // 1e-6 as 0. Over 254 quanta this adds 0.003 of the smallest voxel edge, well inside the voxel by
 // which occupied blocks were grown.
 constexpr double kMeantAs = 1e-5;
 
-using AxisSteps = std::array<std::int64_t, 3>;
-
-AxisSteps blockSteps(const VolumeGeometry& geometry, int blockEdgeVoxels) {
-    AxisSteps steps{};
+std::array<std::int64_t, 3> blockSteps(const VolumeGeometry& geometry, int blockEdgeVoxels) {
+    std::array<std::int64_t, 3> steps{};
     for (int axis = 0; axis < 3; ++axis) {
         const double quanta =
             blockEdgeVoxels * geometry.spacingMm[axis] / geometry.smallestVoxelEdgeMm();
-        steps[axis] = std::int64_t(
-            std::min(double(kFar), std::floor(quanta * (1.0 + kMeantAs) * kUnitsPerQuantum)));
+        steps[axis] = std::int64_t(std::min(
+            double(kFar), std::floor(quanta * (1.0 + kMeantAs) * ProximityUnits::kPerQuantum)));
     }
     return steps;
 }
@@ -140,7 +136,7 @@ private:
 /// The lines along one axis of a grid, cut into planes that threads may share: line l of plane p
 /// starts at p * planeStride + l * lineStride.
 struct AxisLines {
-    std::int64_t length, lines, planes;
+    std::int64_t length, lines;
     std::int64_t stride, lineStride, planeStride;
 };
 
@@ -148,97 +144,117 @@ AxisLines linesAlong(int axis, glm::ivec3 size) {
     const std::array<std::int64_t, 3> strides{1, size.x, std::int64_t(size.x) * size.y};
     const int line = axis == 0 ? 1 : 0;
     const int plane = 3 - axis - line;
-    return {size[axis], size[line], size[plane], strides[axis], strides[line], strides[plane]};
+    return {size[axis], size[line], strides[axis], strides[line], strides[plane]};
 }
 
 /// Lines are gathered by the cache line before they are transformed: y and z would else fetch one
 /// for each entry.
-bool transformAxis(std::vector<std::uint32_t>& squared, const AxisLines& axis, std::int64_t step,
-                   const CancelToken* cancel) {
+void transformPlanes(std::uint32_t* squared, const AxisLines& axis, std::int64_t step,
+                     std::int64_t firstPlane, std::int64_t endPlane) {
     constexpr std::int64_t kBundle = 16;
-    const auto transformPlanes = [&](std::int64_t begin, std::int64_t end) {
-        LineTransform transform(int(axis.length), step);
-        std::vector<std::uint32_t> bundle(kBundle * axis.length);
-        const auto forBundles = [&](std::int64_t plane, auto&& visit) {
-            for (std::int64_t l = 0; l < axis.lines; l += kBundle) {
-                visit(squared.data() + plane * axis.planeStride + l * axis.lineStride,
-                      std::min(kBundle, axis.lines - l));
+    LineTransform transform(int(axis.length), step);
+    std::vector<std::uint32_t> bundle(kBundle * axis.length);
+    const auto forEntries = [&](std::uint32_t* corner, std::int64_t lines, auto&& visit) {
+        for (std::int64_t i = 0; i < axis.length; ++i) {
+            for (std::int64_t l = 0; l < lines; ++l) {
+                visit(corner[i * axis.stride + l * axis.lineStride], bundle[l * axis.length + i]);
             }
-        };
-        const auto forEntries = [&](std::uint32_t* corner, std::int64_t lines, auto&& visit) {
-            for (std::int64_t i = 0; i < axis.length; ++i) {
-                for (std::int64_t l = 0; l < lines; ++l) {
-                    visit(corner[i * axis.stride + l * axis.lineStride],
-                          bundle[l * axis.length + i]);
-                }
-            }
-        };
-        for (std::int64_t plane = begin; plane < end; ++plane) {
-            forBundles(plane, [&](std::uint32_t* corner, std::int64_t lines) {
-                forEntries(corner, lines, [](const auto& grid, auto& local) { local = grid; });
-                for (std::int64_t l = 0; l < lines; ++l) {
-                    transform.apply(bundle.data() + l * axis.length);
-                }
-                forEntries(corner, lines, [](auto& grid, const auto& local) { grid = local; });
-            });
         }
     };
-    return parallelFor(axis.planes, 1, transformPlanes, cancel);
+    for (std::int64_t plane = firstPlane; plane < endPlane; ++plane) {
+        for (std::int64_t first = 0; first < axis.lines; first += kBundle) {
+            std::uint32_t* corner = squared + plane * axis.planeStride + first * axis.lineStride;
+            const std::int64_t lines = std::min(kBundle, axis.lines - first);
+            forEntries(corner, lines, [](const auto& grid, auto& local) { local = grid; });
+            for (std::int64_t l = 0; l < lines; ++l) {
+                transform.apply(bundle.data() + l * axis.length);
+            }
+            forEntries(corner, lines, [](auto& grid, const auto& local) { grid = local; });
+        }
+    }
 }
 
-/// Squared gaps to bytes: 0 where occupied, else one more than the whole quanta of the length.
-bool writeFreeLengths(const Occupancy& occupancy, const std::vector<std::uint32_t>& squared,
-                      double shortest, FreeLengths& cloud, const CancelToken* cancel) {
-    const double quantaPerUnit = shortest / double(kUnitsPerQuantum);
-    return parallelFor(
-        std::int64_t(squared.size()), 65536,
-        [&](std::int64_t begin, std::int64_t end) {
-            for (std::int64_t i = begin; i < end; ++i) {
-                const int whole = int(std::sqrt(double(squared[i])) * quantaPerUnit);
-                cloud.counts[i] = occupancy.occupied[i] != 0 ? 0 : std::uint8_t(1 + whole);
-            }
-        },
-        cancel);
-}
+/// What stages of the transform hand on.
+class SquaredGaps {
+public:
+    SquaredGaps(ProximityUnits units, glm::ivec3 blocks)
+        : units_(units), blocks_(blocks), perSlice_(std::int64_t(blocks.x) * blocks.y),
+          squared_(new std::uint32_t[perSlice_ * blocks.z]) {}
+
+    /// From bytes that are 0 where occupied: gaps along x and y.
+    void withinSlices(const std::uint8_t* counts, std::int64_t begin, std::int64_t end) {
+        std::transform(counts + begin * perSlice_, counts + end * perSlice_,
+                       squared_.get() + begin * perSlice_,
+                       [](std::uint8_t count) { return count == 0 ? 0 : kFarSquared; });
+        transformPlanes(0, begin, end);
+        transformPlanes(1, begin, end);
+    }
+    /// For a range of rows, all slices.
+    void acrossSlices(std::int64_t begin, std::int64_t end) { transformPlanes(2, begin, end); }
+    /// Of free blocks one more than the whole quanta of the length.
+    void write(std::uint8_t* counts, std::int64_t begin, std::int64_t end) const {
+        for (std::int64_t i = begin * perSlice_; i < end * perSlice_; ++i) {
+            const int whole = units_.wholeQuanta(squared_[i]);
+            counts[i] = counts[i] == 0 ? 0 : std::uint8_t(1 + whole);
+        }
+    }
+
+private:
+    void transformPlanes(int axis, std::int64_t begin, std::int64_t end) {
+        slabcast::transformPlanes(squared_.get(), linesAlong(axis, blocks_),
+                                  units_.stepOfBlock[axis], begin, end);
+    }
+
+    ProximityUnits units_;
+    glm::ivec3 blocks_;
+    std::int64_t perSlice_;
+    std::unique_ptr<std::uint32_t[]> squared_; // its memory is not touched before its first stage
+};
 
 } // namespace
+
+ProximityUnits proximityUnits(const VolumeGeometry& geometry, int blockEdgeVoxels) {
+    return {blockSteps(geometry, blockEdgeVoxels),
+            shortestOfUnitVectors(geometry.direction) / double(ProximityUnits::kPerQuantum)};
+}
+
+BuildStages proximityStages(const OctreeLevel& ranges, int blockEdgeVoxels,
+                            const CellVisibility& visibility, const VolumeGeometry& geometry,
+                            FreeLengths& result) {
+    BuildStages stages =
+        occupancyStages(ranges, blockEdgeVoxels, visibility, {.free = 255, .occupied = 0}, result);
+    const BuildStages lengths = proximityStages(geometry, result);
+    stages.insert(stages.end(), lengths.begin(), lengths.end());
+    return stages;
+}
+
+BuildStages proximityStages(const VolumeGeometry& geometry, FreeLengths& marked) {
+    BuildStages stages;
+    marked.quantumMm = geometry.smallestVoxelEdgeMm();
+    const auto gaps = std::make_shared<SquaredGaps>(
+        proximityUnits(geometry, marked.blockEdgeVoxels), marked.blocks);
+    std::uint8_t* counts = marked.counts.data();
+    const auto add = [&](std::int64_t items, auto step) {
+        stages.push_back({items, [=, &marked](std::int64_t begin, std::int64_t end) {
+                              if (marked.occupiedBlocks > 0) { // else all bytes are as they end
+                                  step(begin, end);
+                              }
+                          }});
+    };
+    add(marked.blocks.z, [=](auto begin, auto end) { gaps->withinSlices(counts, begin, end); });
+    add(marked.blocks.y, [=](auto begin, auto end) { gaps->acrossSlices(begin, end); });
+    add(marked.blocks.z, [=](auto begin, auto end) { gaps->write(counts, begin, end); });
+    return stages;
+}
 
 Result<FreeLengths> buildProximityCloud(const CellVisibility& visibility,
                                         const VolumeGeometry& geometry, int blockEdgeVoxels,
                                         const CancelToken* cancel) {
-    constexpr std::array kEdges{1, 2, 4, 8};
-    if (std::find(kEdges.begin(), kEdges.end(), blockEdgeVoxels) == kEdges.end()) {
-        return fail(ErrorCode::InvalidArgument, "block edge " + std::to_string(blockEdgeVoxels) +
-                                                    ": not offered; use 1, 2, 4 or 8 voxels");
-    }
     SLABCAST_EXPECTS(geometry.dims == visibility.texels->dims, geometry.dims.x);
-    const Result<Occupancy> occupancy = occupiedBlocks(visibility, blockEdgeVoxels, cancel);
-    if (!occupancy) {
-        return tl::unexpected(occupancy.error());
-    }
-    const std::vector<std::uint8_t>& occupied = occupancy->occupied;
-    FreeLengths cloud{.blocks = occupancy->blocks,
-                      .blockEdgeVoxels = blockEdgeVoxels,
-                      .quantumMm = geometry.smallestVoxelEdgeMm(),
-                      .counts = std::vector<std::uint8_t>(occupied.size(), 255)};
-    cloud.occupiedBlocks = std::count_if(occupied.begin(), occupied.end(),
-                                         [](std::uint8_t mark) { return mark != 0; });
-    if (cloud.occupiedBlocks == 0) {
-        return cloud;
-    }
-    std::vector<std::uint32_t> squared(occupied.size());
-    std::transform(occupied.begin(), occupied.end(), squared.begin(),
-                   [](std::uint8_t mark) { return mark != 0 ? 0 : kFarSquared; });
-    const AxisSteps steps = blockSteps(geometry, blockEdgeVoxels);
-    const double shortest = shortestOfUnitVectors(geometry.direction);
-    bool complete = true;
-    for (int axis = 0; axis < 3 && complete; ++axis) {
-        complete = transformAxis(squared, linesAlong(axis, cloud.blocks), steps[axis], cancel);
-    }
-    if (!complete || !writeFreeLengths(*occupancy, squared, shortest, cloud, cancel)) {
-        return fail(ErrorCode::Internal, "skip structure: cancelled; build it again when needed");
-    }
-    return cloud;
+    const auto stages = [&](const OctreeLevel& ranges, FreeLengths& result) {
+        return proximityStages(ranges, blockEdgeVoxels, visibility, geometry, result);
+    };
+    return buildGrid(SkipStructure::Proximity, visibility, blockEdgeVoxels, stages, cancel);
 }
 
 } // namespace slabcast

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/volume/regrid.h"
 #include "core/volume/voxel_dispatch.h"
 
 namespace slabcast {
@@ -31,15 +31,6 @@ std::vector<Cover> coversAlong(std::int64_t oldSize, std::int64_t newSize) {
         }
     }
     return covers;
-}
-
-template <class T>
-T roundedTo(double value) {
-    if constexpr (std::is_integral_v<T>) {
-        return static_cast<T>(std::llround(value));
-    } else {
-        return static_cast<T>(value);
-    }
 }
 
 template <class T>
@@ -80,18 +71,6 @@ void averageAll(std::span<const T> voxels, glm::i64vec3 oldDims, std::span<T> ou
     });
 }
 
-VolumeGeometry sameBox(const VolumeGeometry& old, glm::ivec3 newDims) {
-    VolumeGeometry geometry = old;
-    geometry.dims = newDims;
-    for (int axis = 0; axis < 3; ++axis) {
-        geometry.spacingMm[axis] = old.spacingMm[axis] * old.dims[axis] / newDims[axis];
-        // The box's corner stays, so the first centre moves by half the growth.
-        geometry.originMm +=
-            0.5 * (geometry.spacingMm[axis] - old.spacingMm[axis]) * old.direction[axis];
-    }
-    return geometry;
-}
-
 } // namespace
 
 Result<Volume> downsample(const Volume& volume, glm::ivec3 factor) {
@@ -102,17 +81,7 @@ Result<Volume> downsample(const Volume& volume, glm::ivec3 factor) {
     const glm::i64vec3 oldDims(volume.geometry.dims);
     const glm::i64vec3 newDims =
         (oldDims - std::int64_t{1}) / glm::i64vec3(factor) + std::int64_t{1};
-    Volume result;
-    result.name = volume.name;
-    result.unit = volume.unit;
-    result.modality = volume.modality;
-    result.type = volume.type;
-    result.geometry = sameBox(volume.geometry, glm::ivec3(newDims));
-    result.rescaleSlope = volume.rescaleSlope;
-    result.rescaleIntercept = volume.rescaleIntercept;
-    result.nonFiniteVoxels = volume.nonFiniteVoxels;
-    result.voxels.resize(static_cast<std::size_t>(result.geometry.voxelCount()) *
-                         bytesPerVoxel(result.type));
+    Volume result = emptyOverSameBox(volume, glm::ivec3(newDims));
     visitVoxels(volume, [&]<class T>(std::span<const T> voxels) {
         const std::span<T> out(reinterpret_cast<T*>(result.voxels.data()),
                                static_cast<std::size_t>(result.geometry.voxelCount()));

@@ -91,18 +91,6 @@ Result<void> checkExtent(glm::ivec3 dims, std::int64_t bytesPerTexel, const Limi
                          : "; load it with --downsample " + std::to_string(downsampling)));
 }
 
-Result<void> takeUploadError(const std::string& what) {
-    const GLenum error = gl::takeError();
-    if (error == GL_NO_ERROR) {
-        return {};
-    }
-    if (error == GL_OUT_OF_MEMORY) {
-        return fail(ErrorCode::DeviceOutOfMemory, "the GPU has no memory left for " + what +
-                                                      "; load a smaller volume (--downsample 2)");
-    }
-    return fail(ErrorCode::Internal, "uploading " + what + " raised " + gl::errorName(error));
-}
-
 void setSampling(GLenum target, GLint filter, bool mipmapped = false) {
     gl::TexParameteri(target, GL_TEXTURE_MIN_FILTER,
                       mipmapped ? GL_NEAREST_MIPMAP_NEAREST : filter);
@@ -145,23 +133,38 @@ Result<gl::Texture> uploadTable2d(glm::i64vec2 size, GLenum format, GLint filter
                                                     " entries; the device takes 1 to " +
                                                     std::to_string(caps.maxTextureSize));
     }
+    return upload2d("transfer table", {format, GL_RGBA, type, filter, 0}, size, texels);
+}
+
+} // namespace
+
+Result<void> takeUploadError(const std::string& what) {
+    const GLenum error = gl::takeError();
+    if (error == GL_NO_ERROR) {
+        return {};
+    }
+    if (error == GL_OUT_OF_MEMORY) {
+        return fail(ErrorCode::DeviceOutOfMemory, "the GPU has no memory left for " + what +
+                                                      "; load a smaller volume (--downsample 2)");
+    }
+    return fail(ErrorCode::Internal, "uploading " + what + " raised " + gl::errorName(error));
+}
+
+Result<gl::Texture> upload2d(const char* label, const TexelLayout& layout, glm::ivec2 size,
+                             const void* texels) {
     const gl::StateGuard guard;
     gl::StateGuard::usePlainPixelTransfer();
     gl::takeError();
-    gl::Texture texture = gl::Texture::make("transfer table", GL_TEXTURE_2D);
+    gl::Texture texture = gl::Texture::make(label, GL_TEXTURE_2D);
     gl::BindTexture(GL_TEXTURE_2D, texture.id());
-    const auto columns = static_cast<GLsizei>(size.x);
-    const auto rows = static_cast<GLsizei>(size.y);
-    gl::TexStorage2D(GL_TEXTURE_2D, 1, format, columns, rows);
-    setSampling(GL_TEXTURE_2D, filter);
-    gl::TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, columns, rows, GL_RGBA, type, texels);
-    if (const auto uploaded = takeUploadError("the transfer table"); !uploaded) {
+    gl::TexStorage2D(GL_TEXTURE_2D, 1, layout.internalFormat, size.x, size.y);
+    setSampling(GL_TEXTURE_2D, layout.filter);
+    gl::TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size.x, size.y, layout.format, layout.type, texels);
+    if (const auto uploaded = takeUploadError(std::string("the ") + label); !uploaded) {
         return tl::unexpected(uploaded.error());
     }
     return texture;
 }
-
-} // namespace
 
 Result<gl::Texture> allocate3d(const char* label, const TexelLayout& layout, glm::ivec3 dims,
                                int levels) {

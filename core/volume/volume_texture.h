@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -64,6 +65,13 @@ Result<gl::Texture> allocate3d(const char* label, const TexelLayout& layout, glm
 /// The same with what its levels hold, tightly packed.
 Result<gl::Texture> uploadLevels3d(const char* label, const TexelLayout& layout, glm::ivec3 dims,
                                    std::span<const void* const> levels);
+
+/// A 2D texture of one level.
+Result<gl::Texture> upload2d(const char* label, const TexelLayout& layout, glm::ivec2 size,
+                             const void* texels);
+
+/// What the last uploads raised. Fails: DeviceOutOfMemory, Internal.
+Result<void> takeUploadError(const std::string& what);
 
 /// Scalars: R8, R16 and R16F filtered; Rg8Exact (r high byte, g low byte) and R32fExact for
 /// texelFetch.

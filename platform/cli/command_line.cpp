@@ -70,6 +70,7 @@ std::string renderCommandLine(const SceneOptions& scene, const Sampling& samplin
         .add("--termination", sampling.termination ? number(*sampling.termination) : "off")
         .add("--jitter", sampling.jitter ? "on" : "off")
         .addIf(plan.lattice.kind != usual.settings.lattice, "--lattice", name(plan.lattice.kind))
+        .add("--order", name(plan.order))
         .add("--form", plan.variant.unroll > 0 ? "unrolled" : "loop")
         .add("--skip", name(plan.skip))
         .addIf(scene.skip.blockEdgeVoxels != usual.skip.blockEdgeVoxels, "--skip-block",

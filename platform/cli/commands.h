@@ -9,6 +9,8 @@ Result<void> renderCommand(const RenderOptions& options);
 Result<void> sweepCommand(const SweepOptions& options, const std::string& command);
 Result<void> stabilityCommand(const StabilityOptions& options, const std::string& command);
 Result<void> errorCommand(const ErrorOptions& options, const std::string& command);
+Result<void> skipbenchCommand(const SkipbenchOptions& options, const std::string& command);
+Result<void> editCommand(const EditOptions& options, const std::string& command);
 Result<void> infoCommand(const InputOptions& options);
 Result<void> deviceCommand();
 

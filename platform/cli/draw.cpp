@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include <fmt/core.h>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "core/frame/ratio_tuner.h"
@@ -70,9 +71,37 @@ Result<void> Stage::setLook(TransferFunction tf, Classification classification) 
     if (s.tighten && skip.structure == SkipStructure::None) {
         skip.structure = SkipStructure::Blocks; // for the planes alone
     }
-    const int maxTable =
-        static_cast<int>(std::min<std::int64_t>(4096, session_.caps.maxTextureSize));
-    return loaded_.scene.setLook(look, skip, maxTable);
+    const SkipBuilder builder = options_.skipBuilder;
+    const bool onGpu = skip.structure != SkipStructure::None &&
+                       (builder == SkipBuilder::Gpu ||
+                        (builder == SkipBuilder::Auto && !session_.caps.isSoftware));
+    if (!onGpu) {
+        return loaded_.scene.setLook(look, skip, maxTableSize());
+    }
+    constexpr SkipOptions kNotYet{.structure = SkipStructure::None};
+    if (Result<void> set = loaded_.scene.setLook(look, kNotYet, maxTableSize()); !set) {
+        return set;
+    }
+    Result<void> built = renderer_.buildSkip(loaded_.scene, skip);
+    if (built || built.error().code != ErrorCode::DeviceUnsupported) {
+        return built;
+    }
+    fmt::print(stderr, "slabcast: {}\n", built.error().detail);
+    return loaded_.scene.setLook(look, skip, maxTableSize());
+}
+
+int Stage::maxTableSize() const {
+    return static_cast<int>(std::min<std::int64_t>(4096, session_.caps.maxTextureSize));
+}
+
+Result<Scene> Stage::variation(const TransferFunction& tf, const SkipOptions& skip) const {
+    Scene varied = scene();
+    Look look = varied.look();
+    look.tf = tf;
+    if (Result<void> set = varied.setLook(look, skip, maxTableSize()); !set) {
+        return tl::unexpected(set.error());
+    }
+    return varied;
 }
 
 Result<void> Stage::reclassify(Classification classification) {
@@ -166,6 +195,25 @@ Result<WorkCounters> Stage::countWork(const FramePlan& plan) {
     return renderer_.countWork(scene(), plan, views(0.0));
 }
 
+Result<std::vector<PixelWork>> Stage::workPerPixel(const FramePlan& plan) {
+    const glm::ivec2 size = options_.size;
+    std::vector<PixelWork> picture(static_cast<std::size_t>(size.x) * size.y);
+    for (const ViewTarget& target : views(0.0)) {
+        const Result<std::vector<PixelWork>> work = renderer_.workPerPixel(scene(), plan, target);
+        if (!work) {
+            return work;
+        }
+        const Viewport& v = target.viewport;
+        for (int y = 0; y < v.height; ++y) {
+            const auto row = work->begin() + static_cast<std::ptrdiff_t>(y) * v.width;
+            const int fromTop = size.y - 1 - (v.y + y);
+            std::copy(row, row + v.width,
+                      picture.begin() + static_cast<std::ptrdiff_t>(fromTop) * size.x + v.x);
+        }
+    }
+    return picture;
+}
+
 std::vector<glm::vec4> Stage::picture(bool encoded) const {
     std::vector<glm::vec4> pixels = target_.read();
     const bool convert = encoded != (space_ == CompositingSpace::Display);
@@ -229,8 +277,11 @@ nlohmann::json toJson(const FramePlan& plan) {
             {"jitter", plan.lattice.jittered},
             {"variant", name(plan.variant)},
             {"tighten", plan.tighten},
-            {"termination", plan.variant.terminates ? nlohmann::json(plan.terminationAlpha)
-                                                    : nlohmann::json("off")},
+            {"termination", plan.variant.terminates || plan.planesPerMark > 0
+                                ? nlohmann::json(plan.terminationAlpha)
+                                : nlohmann::json("off")},
+            {"order", name(plan.order)},
+            {"planesPerMark", plan.planesPerMark},
             {"target", name(plan.target)},
             {"space", name(plan.space)},
             {"drawsNothing", plan.drawsNothing},
@@ -250,7 +301,9 @@ nlohmann::json toJson(const Result<WorkCounters>& counters) {
             {"layers_evaluated", counters->layersEvaluated},
             {"layers_skipped", counters->layersSkipped},
             {"volume_fetches", counters->volumeFetches},
-            {"skip_fetches", counters->skipFetches}};
+            {"skip_fetches", counters->skipFetches},
+            {"stretches", counters->stretches},
+            {"blocks_visited", counters->blocksVisited}};
 }
 
 } // namespace slabcast

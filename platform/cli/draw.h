@@ -18,6 +18,16 @@ public:
     /// Classifies anew, under the same transfer function.
     Result<void> reclassify(Classification classification);
 
+    /// The scene as it is, under a transfer function and skipping as told, to be shown in its
+    /// place: they share the texels.
+    Result<Scene> variation(const TransferFunction& tf, const SkipOptions& skip) const;
+
+    /// From here on this one is drawn. Contract: it is a variation.
+    void show(Scene scene) { loaded_.scene = std::move(scene); }
+
+    /// Of the picture, from the next prepare() on.
+    void resize(glm::ivec2 size) { options_.size = size; }
+
     /// Decides the plan; measures ratios first where the settings leave the ratio open.
     Result<FramePlan> decide(const Settings& settings);
 
@@ -33,6 +43,8 @@ public:
     Result<std::vector<glm::dvec4>> drawOnNothing(const FramePlan& plan);
 
     Result<WorkCounters> countWork(const FramePlan& plan);
+    /// The same of every pixel of the picture, both eyes where there are two, top row first.
+    Result<std::vector<PixelWork>> workPerPixel(const FramePlan& plan);
 
     /// The picture, top row first, over the background: sRGB-encoded if `encoded`, else light.
     /// Alpha 1 unless the background is transparent, then not premultiplied if encoded.
@@ -54,6 +66,7 @@ private:
           renderer_(std::move(renderer)) {}
 
     Result<void> setLook(TransferFunction tf, Classification classification);
+    int maxTableSize() const;
     Result<double> drawOn(glm::vec4 clear, const FramePlan& plan, double turnDegrees);
 
     SceneOptions options_;

@@ -62,6 +62,14 @@ int run(int argc, char** argv) {
     bindError(*add("error", "Measures the error of pictures against the time that they take",
                    [&] { return errorCommand(error, commandLine(argc, argv)); }),
               error);
+    SkipbenchOptions skipbench;
+    bindSkipbench(*add("skipbench", "Compares the ways of skipping empty space",
+                       [&] { return skipbenchCommand(skipbench, commandLine(argc, argv)); }),
+                  skipbench);
+    EditOptions edit;
+    bindEdit(*add("edit", "Replays edits of the transfer function and times every frame",
+                  [&] { return editCommand(edit, commandLine(argc, argv)); }),
+             edit);
     InputOptions info;
     bindInfo(*add("info", "Tells what a volume is and what drawing it takes",
                   [&] { return infoCommand(info); }),

@@ -21,7 +21,11 @@ void bindScene(CLI::App& command, SceneOptions& o) {
     bindStack(command, o);
 }
 
-constexpr glm::ivec2 kQuickSize(160); // of `error`
+constexpr glm::ivec2 kQuickSize(160);      // of `error`
+constexpr glm::ivec2 kQuickBenchSize(128); // of `skipbench`
+constexpr int kQuickFrames = 5;
+const std::vector<int> kBenchSizes{64, 128, 256, 512};
+const std::vector<int> kQuickBenchSizes{64, 128, 256};
 
 /// The families of `stability`, each by its name.
 Choices<std::string> familyWords() {
@@ -108,6 +112,38 @@ void bindTargetError(CLI::App& command, RenderOptions& o) {
     });
 }
 
+constexpr double kLeastHeat = 0.01; // of a heatmap's last colour
+constexpr double kMostHeat = 1e9;
+
+std::optional<HeatmapScale> parseHeatmapScale(const std::string& word) {
+    if (word == "normalised" || word == "absolute") {
+        return HeatmapScale{.absolute = word == "absolute"};
+    }
+    const auto maximum = numberParser<double>(kLeastHeat, kMostHeat)(word);
+    return maximum ? std::optional(HeatmapScale{.maximum = maximum}) : std::nullopt;
+}
+
+void bindHeatmap(CLI::App& command, RenderOptions& o) {
+    const auto group = "Output";
+    CLI::Option* heatmap =
+        addChoice(command, "--heatmap", o.heatmap,
+                  {{"off", std::nullopt},
+                   {name(HeatmapQuantity::Iterations), HeatmapQuantity::Iterations},
+                   {name(HeatmapQuantity::Fetches), HeatmapQuantity::Fetches},
+                   {name(HeatmapQuantity::Layers), HeatmapQuantity::Layers}},
+                  "draw what each pixel costs instead: iterations are looks at the skip structure "
+                  "and layers evaluated, fetches are of volume and skip structure")
+            ->group(group);
+    addParsed<HeatmapScale>(
+        command, "--heatmap-scale", o.heatmapScale, parseHeatmapScale,
+        fmt::format("normalised, absolute or a number from {} to {}", kLeastHeat, kMostHeat),
+        "cost of the last colour: the picture's most, the number of layers in all, or a number")
+        ->type_name("normalised|absolute|MAXIMUM")
+        ->default_str("normalised")
+        ->needs(heatmap)
+        ->group(group);
+}
+
 } // namespace
 
 void bindRender(CLI::App& command, RenderOptions& o) {
@@ -127,6 +163,7 @@ void bindRender(CLI::App& command, RenderOptions& o) {
         ->type_name("FILE")
         ->group(output);
     command.add_flag("--explain", o.explain, "print what the plan chose and why")->group(output);
+    bindHeatmap(command, o);
     bindScene(command, o);
     addNumber(command, "--layers", o.settings.totalLayers, 1, kMaxLayers,
               "layers in all, instead of --layer-spacing")
@@ -222,6 +259,146 @@ void bindError(CLI::App& command, ErrorOptions& o) {
     command.footer("Example: which setting is worth its time on this device; look at "
                    "err/report.html\n"
                    "  slabcast error phantom:vessels:64 --quick --out err");
+}
+
+void bindSkipbench(CLI::App& command, SkipbenchOptions& o) {
+    const auto group = "Output";
+    command
+        .add_option("VOLUME", o.volumes,
+                    "one or several, as other commands take one: files, folders or "
+                    "phantom:NAME[:SIZE]; phantom:gap has its bulk where its preset shows nothing")
+        ->required();
+    command
+        .add_option("--out", o.outputFolder,
+                    "folder for skipbench.json, skipbench.csv and report.html; made where missing")
+        ->required()
+        ->type_name("FOLDER")
+        ->group(group);
+    command
+        .add_flag("--quick", o.quick,
+                  fmt::format("{}x{} pixels, {} frames, fewer parameters and sizes",
+                              kQuickBenchSize.x, kQuickBenchSize.y, kQuickFrames))
+        ->group(group);
+    addNumber(command, "--frames", o.frames, kFewestFrames, 10000,
+              "timed frames per row, fewer of slow ones")
+        ->type_name("N")
+        ->default_str(fmt::format("{}", o.frames))
+        ->group(group);
+    const auto varied = "What is varied";
+    addList<int>(command, "--sizes", o.sizes, numberParser<int>(1, 1024),
+                 "whole numbers from 1 to 1024",
+                 "edges of the cubes that the first volume is resampled to")
+        ->type_name("N,...")
+        ->default_str(fmt::format("{}", fmt::join(kBenchSizes, ",")))
+        ->group(varied);
+    addParsed<std::int64_t>(
+        command, "--partition-budget", o.skip.memoryBudgetBytes,
+        [](const std::string& word) {
+            const std::optional<double> mib = numberParser<double>(0.001, 1e6)(word);
+            return mib ? std::optional(static_cast<std::int64_t>(*mib * 1048576.0)) : std::nullopt;
+        },
+        "a number from 0.001 to 1000000",
+        "partitioned maps that take more memory are refused, and named")
+        ->type_name("MIB")
+        ->default_str(fmt::format("{}", o.skip.memoryBudgetBytes >> 20))
+        ->group(varied);
+    o.size = {256, 256};
+    bindCamera(command, o);
+    bindLook(command, o);
+    command.final_callback([&command, &o] {
+        if (o.quick && command.count("--size") == 0) {
+            o.size = kQuickBenchSize;
+        }
+        if (o.quick && command.count("--frames") == 0) {
+            o.frames = kQuickFrames;
+        }
+        if (command.count("--sizes") == 0) {
+            o.sizes = o.quick ? kQuickBenchSizes : kBenchSizes;
+        }
+    });
+    command.footer("Example: which way to skip suits this device; look at bench/report.html\n"
+                   "  slabcast skipbench skull.nrrd phantom:gap --quick --out bench");
+}
+
+void bindEdit(CLI::App& command, EditOptions& o) {
+    const auto output = "Output";
+    command
+        .add_option("--out", o.outputFolder,
+                    "folder for edit.json, edit.csv and report.html; made where it is missing")
+        ->required()
+        ->type_name("FOLDER")
+        ->group(output);
+    command
+        .add_flag("--verify", o.verify,
+                  "compare every frame, bit for bit, with one drawn from scratch without skipping")
+        ->group(output);
+    addNumber(command, "--budget", o.budgetMs, 0.001, 1e6, "what a frame may take: a line to hold")
+        ->type_name("MS")
+        ->default_str("1.5 times the median frame of an octree that is there already")
+        ->group(output);
+    const auto edits = "Edits";
+    CLI::Option* script =
+        command.add_option("--script", o.scriptFile, "what is edited when, as below")
+            ->type_name("FILE")
+            ->group(edits);
+    addParsed<std::optional<std::array<std::string, 2>>>(
+        command, "--interpolate", o.interpolate,
+        [](const std::string& word) -> std::optional<std::optional<std::array<std::string, 2>>> {
+            const auto names = split(word, ',');
+            if (names.size() != 2 || names[0].empty() || names[1].empty()) {
+                return std::nullopt;
+            }
+            return std::array{std::string(names[0]), std::string(names[1])};
+        },
+        "two presets or files with a comma between",
+        "from the first to the second of two presets or files and back, by a sine in time")
+        ->type_name("TF_A,TF_B")
+        ->group(edits)
+        ->excludes(script);
+    addNumber(command, "--frames", o.frames, 20, 100000, "frames, where no script says how many")
+        ->type_name("N")
+        ->default_str(fmt::format("{}", o.frames))
+        ->group(edits)
+        ->excludes(script);
+    addNumber(command, "--turn", o.turnDegrees, -36000.0, 36000.0,
+              "turn the volume by so many degrees from first to last")
+        ->type_name("DEG")
+        ->default_str("0")
+        ->group(edits);
+    addNumber(command, "--work", o.workBudgetMs, 0.0, 1e6,
+              "what a frame may spend on rebuilding the structure that --skip names")
+        ->type_name("MS")
+        ->default_str(fmt::format("{:g}", o.workBudgetMs))
+        ->group(edits);
+    addNumber(command, "--quiet", o.quietFrames, 0, 100000,
+              "frames without an edit before that begins")
+        ->type_name("N")
+        ->default_str(fmt::format("{}", o.quietFrames))
+        ->group(edits);
+    addNumber(command, "--octree-frames", o.octreeFrames, 1, 1000,
+              "frames of the octree, the median of which each frame is compared with")
+        ->type_name("N")
+        ->default_str(fmt::format("{}", o.octreeFrames))
+        ->group(edits);
+    o.size = {512, 512};
+    bindScene(command, o);
+    addNumber(command, "--layers-per-plane", o.settings.layersPerPlane, 1, kMaxLayers,
+              "1 is slicing; more than there are is ray casting")
+        ->type_name("N")
+        ->default_str("the fastest of several, measured")
+        ->group(kLayersGroup);
+    command.footer(
+        "A script is {\"start\": TF, \"steps\": [STEP, ...]}, where a TF is a preset's name, a "
+        "file,\n"
+        "or what such a file holds. Every step begins with the TF that the one before it left:\n"
+        "  {\"kind\": \"pause\", \"frames\": 20}\n"
+        "  {\"kind\": \"interpolate\", \"to\": TF, \"frames\": 60, \"periods\": 1}  there and "
+        "back\n"
+        "  {\"kind\": \"opacity\", \"point\": 2, \"to\": 0.05, \"frames\": 30}    dragged\n"
+        "  {\"kind\": \"jump\", \"to\": TF, \"frames\": 15}                     then rests\n"
+        "  {\"kind\": \"random\", \"frames\": 40, \"every\": 1, \"seed\": 7}    bands of values\n"
+        "Example: does any frame of an edit take long; look at edit/report.html\n"
+        "  slabcast edit skull.nrrd --interpolate ct-bone,ct-lung --verify --out edit");
 }
 
 void bindInfo(CLI::App& command, InputOptions& o) {

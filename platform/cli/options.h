@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,9 +10,13 @@
 #include "core/frame/frame_plan.h"
 #include "core/frame/renderer.h"
 #include "platform/cli/error_grid.h"
+#include "platform/cli/heatmap.h"
 #include "platform/cli/session.h"
 
 namespace slabcast {
+
+/// Where skip structures are built. Auto: on the GPU, unless that is the CPU in disguise.
+enum class SkipBuilder : std::uint8_t { Auto, Cpu, Gpu };
 
 /// What render and sweep have in common: the scene, the camera and the settings of the plan.
 struct SceneOptions {
@@ -23,6 +28,7 @@ struct SceneOptions {
     std::optional<double> stereoIpdMm;
     Settings settings;
     SkipOptions skip; // its structure is settings.skip where that is set
+    SkipBuilder skipBuilder = SkipBuilder::Auto;
     std::optional<glm::dvec3> background = glm::dvec3(0.0); // sRGB-encoded; none: transparent
 };
 
@@ -33,6 +39,8 @@ struct RenderOptions : SceneOptions {
     bool explain = false;
     std::optional<double> targetError; // RMSE: decides the sampling
     bool verify = false;
+    std::optional<HeatmapQuantity> heatmap; // of the first frame, instead of its picture
+    HeatmapScale heatmapScale;
 };
 
 struct SweepOptions : SceneOptions {
@@ -56,12 +64,35 @@ struct ErrorOptions : SceneOptions {
     int frames = 5; // of a row, at most
 };
 
+struct SkipbenchOptions : SceneOptions {
+    std::vector<std::string> volumes; // instead of the input's one
+    std::string outputFolder;
+    bool quick = false;
+    int frames = 9;         // of a row, at most
+    std::vector<int> sizes; // edges of cubes that the first volume is resampled to
+};
+
+struct EditOptions : SceneOptions {
+    std::string outputFolder;
+    std::string scriptFile;
+    std::optional<std::array<std::string, 2>> interpolate; // transfer functions
+    int frames = 240;                                      // without a script
+    double turnDegrees = 0.0;                              // of the volume, over all frames
+    double workBudgetMs = 2.0;
+    int quietFrames = LiveOptions{}.quietFrames;
+    std::optional<double> budgetMs; // of a frame; none: by the octree's
+    int octreeFrames = 3;           // that one is measured against
+    bool verify = false;
+};
+
 // Each binds the options of one command, with its help; values that do not parse throw
 // CLI::ParseError. `options` must outlive the parsing.
 void bindRender(CLI::App& command, RenderOptions& options);
 void bindSweep(CLI::App& command, SweepOptions& options);
 void bindStability(CLI::App& command, StabilityOptions& options);
 void bindError(CLI::App& command, ErrorOptions& options);
+void bindSkipbench(CLI::App& command, SkipbenchOptions& options);
+void bindEdit(CLI::App& command, EditOptions& options);
 void bindInfo(CLI::App& command, InputOptions& options);
 
 } // namespace slabcast

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <numeric>
+
 #include <fmt/core.h>
 
 #include "platform/cli/commands.h"
@@ -101,6 +104,35 @@ void print(const PictureDifference& d) {
                d.rmse, d.psnr, d.max, d.meanDeltaE, d.p999DeltaE);
 }
 
+/// The first frame's cost, pixel by pixel.
+struct CostPicture {
+    std::vector<glm::vec4> pixels; // top row first
+    nlohmann::json stats;
+};
+
+Result<CostPicture> drawCosts(Stage& stage, const FramePlan& plan, const RenderOptions& options,
+                              bool encoded) {
+    const HeatmapQuantity quantity = *options.heatmap;
+    const Result<std::vector<PixelWork>> work = stage.workPerPixel(plan);
+    if (!work) {
+        return tl::unexpected(work.error());
+    }
+    std::vector<double> costs(work->size());
+    std::transform(work->begin(), work->end(), costs.begin(),
+                   [=](const PixelWork& pixel) { return costOf(pixel, quantity); });
+    const double maximum = maximumOf(options.heatmapScale, costs, plan.lattice.total);
+    CostPicture picture{drawHeatmap(options.size, costs, quantity, maximum),
+                        {{"quantity", name(quantity)},
+                         {"maximum", maximum},
+                         {"sum", std::accumulate(costs.begin(), costs.end(), 0.0)}}};
+    if (!encoded) {
+        for (glm::vec4& pixel : picture.pixels) {
+            pixel = glm::vec4(glm::vec3(linearFromSrgb(glm::dvec3(pixel))), pixel.a);
+        }
+    }
+    return picture;
+}
+
 nlohmann::json stats(Stage& stage, const FramePlan& plan, const std::vector<double>& times) {
     const GpuMemory gpu = stage.renderer().gpuMemory();
     return {{"device", toJson(stage.session().caps)},
@@ -167,6 +199,14 @@ Result<void> renderCommand(const RenderOptions& given) {
     if (!turn) {
         return tl::unexpected(turn.error());
     }
+    std::optional<CostPicture> costs;
+    if (options.heatmap) {
+        Result<CostPicture> drawn = drawCosts(*stage, *plan, options, *encoded);
+        if (!drawn) {
+            return tl::unexpected(drawn.error());
+        }
+        costs = std::move(*drawn);
+    }
     std::optional<PictureDifference> error;
     if (options.verify) {
         const Result<PictureDifference> found = verify(*stage, *plan, options.size);
@@ -175,8 +215,9 @@ Result<void> renderCommand(const RenderOptions& given) {
         }
         error = *found;
     }
-    if (Result<void> saved = savePicture(options.output, options.size, turn->firstPicture,
-                                         options.background.has_value());
+    if (Result<void> saved =
+            savePicture(options.output, options.size, costs ? costs->pixels : turn->firstPicture,
+                        costs || options.background.has_value());
         !saved) {
         return saved;
     }
@@ -189,6 +230,9 @@ Result<void> renderCommand(const RenderOptions& given) {
     nlohmann::json content = stats(*stage, *plan, turn->frameMs);
     if (error) {
         content["error"] = toJson(*error);
+    }
+    if (costs) {
+        content["heatmap"] = costs->stats;
     }
     return writeFileAtomically(options.statsFile, content.dump(2) + "\n");
 }

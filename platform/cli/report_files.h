@@ -40,7 +40,9 @@ inline constexpr CsvColumn kMeasuredColumns[] = {{"frame_ms_median", "/frameMs/m
                                                  {"layers_evaluated", "/counters/layers_evaluated"},
                                                  {"layers_skipped", "/counters/layers_skipped"},
                                                  {"volume_fetches", "/counters/volume_fetches"},
-                                                 {"skip_fetches", "/counters/skip_fetches"}};
+                                                 {"skip_fetches", "/counters/skip_fetches"},
+                                                 {"stretches", "/counters/stretches"},
+                                                 {"blocks_visited", "/counters/blocks_visited"}};
 
 /// One table's columns from those of its parts.
 std::vector<CsvColumn> columnsOf(std::initializer_list<std::span<const CsvColumn>> parts);

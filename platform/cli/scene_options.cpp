@@ -227,11 +227,22 @@ void bindStack(CLI::App& command, SceneOptions& o) {
     addChoice(command, "--form", s.form, formWords(),
               "segments written out layer by layer, or as a loop; auto goes by device and length")
         ->group(group);
+    addChoice(command, "--order", s.order,
+              {{"auto", std::nullopt},
+               {"back-to-front", BlendOrder::BackToFront},
+               {"front-to-back", BlendOrder::FrontToBack}},
+              "planes over each other, or nearest first, which leaves out what is behind opaque "
+              "material; auto goes by how soon a ray can be opaque")
+        ->group(group);
     addChoice(command, "--skip", s.skip, skipWords(),
               "how empty space is skipped; never changes the picture; auto goes by what is visible")
         ->group(group);
     addNumber(command, "--skip-block", o.skip.blockEdgeVoxels, 1, 64,
               "edge in voxels of the skip structure's blocks, or of an octree's leaves")
+        ->group(group);
+    addChoice(command, "--skip-builder", o.skipBuilder,
+              {{"auto", SkipBuilder::Auto}, {"cpu", SkipBuilder::Cpu}, {"gpu", SkipBuilder::Gpu}},
+              "where it is built, with the same result; auto: on the GPU unless that is software")
         ->group(group);
     addNumber(command, "--skip-bits", o.skip.bits, 8, 128,
               "bits per node of a bitfield octree: 8, 16, 32, 64 or 128")
@@ -278,7 +289,8 @@ void bindSampling(CLI::App& command, Settings& s) {
         ->group(group);
     addParsed<std::optional<double>>(command, "--termination", s.termination, parseTermination,
                                      kTerminationNeeded,
-                                     "opacity at which a segment is left, or off")
+                                     "opacity at which a segment is left and, front to back, a "
+                                     "ray, or off: the picture lacks at most what it lacks of 1")
         ->type_name("A|off")
         ->default_str(fmt::format("{:.4f}", s.termination.value_or(1.0)))
         ->group(group);

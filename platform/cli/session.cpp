@@ -10,6 +10,7 @@
 #include "core/gl/api.h"
 #include "core/volume/downsample.h"
 #include "core/volume/phantoms.h"
+#include "core/volume/resample.h"
 #include "platform/io/load_volume.h"
 #include "platform/io/transfer_json.h"
 
@@ -48,9 +49,27 @@ Result<Volume> openVolume(const InputOptions& options) {
         volume = loadVolume(options.volume, load);
     }
     if (volume && options.downsample > 1) {
-        return downsample(*volume, glm::ivec3(options.downsample));
+        volume = downsample(*volume, glm::ivec3(options.downsample));
+    }
+    if (volume && options.cubeEdge > 0) {
+        volume = resample(*volume, glm::ivec3(options.cubeEdge));
     }
     return volume;
+}
+
+namespace {
+
+/// Of full scale.
+double maxFilterError(const Session& session, TexelFormat format) {
+    const auto test = std::find_if(session.formats.begin(), session.formats.end(),
+                                   [=](const TexelFormatTest& t) { return t.format == format; });
+    return test == session.formats.end() ? 0.0 : test->maxFilterError;
+}
+
+} // namespace
+
+double filterErrorSampled(const Session& session, TexelFormat format) {
+    return maxFilterError(session, format) * fullScaleSampled(format);
 }
 
 Result<MemoryForecast> checkMemory(const VolumeInfo& info, TexelFormat format,
@@ -96,15 +115,12 @@ Result<LoadedScene> openScene(const InputOptions& options, Classification classi
         return tl::unexpected(forecast.error());
     }
     info.forecast = *forecast;
-    const auto test = std::find_if(session.formats.begin(), session.formats.end(),
-                                   [=](const TexelFormatTest& t) { return t.format == format; });
-    const double filterError = test == session.formats.end() ? 0.0 : test->maxFilterError;
     std::optional<Texels> values;
     if (options.keepValues) {
         values = encodeTexels(*volume, statistics, TexelFormat::R32fExact);
     }
-    return LoadedScene{Scene::create(std::move(*volume), format, filterError), std::move(info),
-                       std::move(values)};
+    return LoadedScene{Scene::create(std::move(*volume), format, maxFilterError(session, format)),
+                       std::move(info), std::move(values)};
 }
 
 Result<TransferFunction> chooseTransferFunction(const std::string& tf, const Scene& scene,

@@ -27,12 +27,16 @@ struct InputOptions {
     std::string series;
     std::string raw;
     int downsample = 1;
+    int cubeEdge = 0; // resampled to so many voxels along each axis; 0: as it is
     bool exact = false;
     std::optional<double> gpuBudgetMib;
     bool keepValues = false; // the volume's own values too, for references
 };
 
 Result<Volume> openVolume(const InputOptions& options);
+
+/// What the texture unit's filter may add to a sample, in sampled units.
+double filterErrorSampled(const Session& session, TexelFormat format);
 
 /// What statistics say of the volume after its voxels are gone.
 struct VolumeInfo {

@@ -158,6 +158,7 @@ json header(Stage& stage, const SweepOptions& options, const std::string& comman
     if (skip.exists()) {
         result["skipBuild"] = {{"structure", name(skip.options.structure)},
                                {"blockEdge", skip.options.blockEdgeVoxels},
+                               {"builder", skip.onGpu ? "gpu" : "cpu"},
                                {"ms", skip.buildMs},
                                {"occupiedFraction", skip.occupiedFraction}};
     }

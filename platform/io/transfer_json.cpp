@@ -1,85 +1,14 @@
 #include "platform/io/transfer_json.h"
 
-#include <algorithm>
-#include <fstream>
-#include <iterator>
-
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
+
+#include "platform/io/json_checks.h"
 
 namespace slabcast {
 
 namespace {
 
 using nlohmann::json;
-
-struct Range {
-    double low;
-    double high;
-};
-
-constexpr Range kAnyNumber = {-1e300, 1e300};
-constexpr Range kUnitInterval = {0.0, 1.0};
-
-/// Where something is wrong and what; the border of parseTransferFunction turns it into an Error.
-struct Complaint {
-    std::string at;
-    std::string what;
-};
-
-template <class T>
-using Checked = tl::expected<T, Complaint>;
-
-tl::unexpected<Complaint> complain(std::string at, std::string what) {
-    return tl::unexpected(Complaint{std::move(at), std::move(what)});
-}
-
-std::string inside(const std::string& at, std::string_view key) {
-    return at.empty() ? std::string(key) : fmt::format("{}.{}", at, key);
-}
-
-Checked<void> checkKeys(const json& object, const std::string& at,
-                        std::initializer_list<const char*> known) {
-    if (!object.is_object()) {
-        return complain(at, fmt::format("is {}, expected an object", object.type_name()));
-    }
-    for (const auto& entry : object.items()) {
-        if (std::find(known.begin(), known.end(), entry.key()) == known.end()) {
-            return complain(inside(at, entry.key()),
-                            fmt::format("unknown key; known are {}", fmt::join(known, ", ")));
-        }
-    }
-    return {};
-}
-
-Checked<double> number(const json& value, const std::string& at, Range range) {
-    if (!value.is_number()) {
-        return complain(at, fmt::format("is {}, expected a number", value.type_name()));
-    }
-    const double x = value.get<double>();
-    if (!(x >= range.low && x <= range.high)) {
-        return complain(at, fmt::format("{} is outside {}..{}", x, range.low, range.high));
-    }
-    return x;
-}
-
-Checked<double> numberAt(const json& object, const std::string& at, const char* key, Range range) {
-    const auto found = object.find(key);
-    return found == object.end() ? complain(inside(at, key), "is missing")
-                                 : number(*found, inside(at, key), range);
-}
-
-Checked<std::string> text(const json& object, const char* key) {
-    const auto found = object.find(key);
-    if (found == object.end()) {
-        return std::string();
-    }
-    if (!found->is_string()) {
-        return complain(key, fmt::format("is {}, expected a text", found->type_name()));
-    }
-    return found->get<std::string>();
-}
 
 Checked<glm::dvec3> parseColor(const json& point, const std::string& at) {
     const std::string path = inside(at, "color");
@@ -137,13 +66,13 @@ Checked<std::vector<TransferPoint>> parsePoints(const json& object) {
 }
 
 Checked<TransferFunction> parseObject(const json& object) {
-    constexpr Range kOpacityUnitMm = {1e-6, 1e6};
+    constexpr JsonRange kOpacityUnitMm = {1e-6, 1e6};
     TransferFunction tf;
     return checkKeys(object, "", {"name", "unit", "opacityUnitMm", "points"})
-        .and_then([&]() { return text(object, "name"); })
+        .and_then([&]() { return textAt(object, "", "name"); })
         .and_then([&](const std::string& name) {
             tf.name = name;
-            return text(object, "unit");
+            return textAt(object, "", "unit");
         })
         .and_then([&](const std::string& unit) -> Checked<double> {
             tf.unit = unit;
@@ -161,28 +90,16 @@ Checked<TransferFunction> parseObject(const json& object) {
         });
 }
 
-/// nlohmann's texts begin with "[json.exception.parse_error.101] "; people need what follows.
-std::string withoutTag(std::string_view what) {
-    const std::size_t end = what.find("] ");
-    return std::string(end == std::string_view::npos ? what : what.substr(end + 2));
-}
-
 } // namespace
 
 Result<TransferFunction> parseTransferFunction(std::string_view text, std::string_view sourceName) {
-    json document;
-    try {
-        document = json::parse(text);
-    } catch (const json::exception& exception) {
-        return fail(ErrorCode::InvalidTransferFunction,
-                    fmt::format("{}: {}; correct the JSON there", sourceName,
-                                withoutTag(exception.what())));
+    Result<json> document = parseJson(text, sourceName, ErrorCode::InvalidTransferFunction);
+    if (!document) {
+        return tl::unexpected(document.error());
     }
-    return parseObject(document)
+    return parseObject(*document)
         .map_error([](const Complaint& complaint) {
-            return Error{ErrorCode::InvalidTransferFunction,
-                         fmt::format("{}{}{}", complaint.at, complaint.at.empty() ? "" : ": ",
-                                     complaint.what)};
+            return Error{ErrorCode::InvalidTransferFunction, said(complaint)};
         })
         .and_then([](TransferFunction tf) { return validated(std::move(tf)); })
         .map_error([&](const Error& error) {
@@ -191,20 +108,9 @@ Result<TransferFunction> parseTransferFunction(std::string_view text, std::strin
 }
 
 Result<TransferFunction> loadTransferFunction(const std::filesystem::path& path) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) {
-        return fail(
-            ErrorCode::FileNotFound,
-            fmt::format("{}: no such transfer function file; check the path", path.string()));
-    }
-    std::ifstream file(path, std::ios::binary);
-    if (!file || std::filesystem::is_directory(path, ignored)) {
-        return fail(ErrorCode::FileUnreadable,
-                    fmt::format("{}: cannot be read; check that it is a file and its permissions",
-                                path.string()));
-    }
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    return parseTransferFunction(text, path.filename().string());
+    return readText(path.string(), "transfer function file").and_then([&](const std::string& text) {
+        return parseTransferFunction(text, path.filename().string());
+    });
 }
 
 } // namespace slabcast

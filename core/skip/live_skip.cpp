@@ -1,0 +1,228 @@
+#include "core/skip/live_skip.h"
+
+#include <algorithm>
+#include <bit>
+#include <string>
+
+#include "core/skip/minmax_octree.h"
+#include "core/skip/occupancy.h"
+
+namespace slabcast {
+
+namespace {
+
+using Clock = GridRebuild::Clock;
+
+/// Cubes of 8^3 blocks: one is as much work as a slice of a small grid.
+constexpr int kRegionLevel = 3;
+
+double msSince(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+bool hasStructure(const SkipOptions& options) {
+    return options.structure != SkipStructure::None;
+}
+
+Result<void> checkServes(const LiveOptions& o) {
+    if (!hasStructure(o.always) || infoOf(o.always.structure).dependsOnTransfer) {
+        return fail(ErrorCode::InvalidArgument,
+                    std::string("editing with ") + name(o.always.structure) +
+                        ": it is not right under every transfer function; take bitfield-octree, "
+                        "minmax-octree or partitioned");
+    }
+    const SkipStructure settled = o.settled.structure;
+    if (settled != SkipStructure::None && settled != SkipStructure::Blocks &&
+        settled != SkipStructure::Proximity && settled != SkipStructure::Chebyshev) {
+        return fail(ErrorCode::InvalidArgument,
+                    std::string("editing with ") + name(settled) +
+                        " after the last edit: it is not rebuilt in pieces; take proximity, "
+                        "chebyshev, blocks or none");
+    }
+    return check(o.always).and_then([&] { return check(o.settled); });
+}
+
+/// The level of the octree whose nodes are blocks of this edge, or -1.
+int levelOfEdge(int leafEdge, int levels, int blockEdge) {
+    for (int level = 0; level < levels; ++level) {
+        if (leafEdge << level == blockEdge) {
+            return level;
+        }
+    }
+    return -1;
+}
+
+/// Ranges of the blocks, from the octree where it has them: a block grown by one voxel is the union
+/// of its leaves grown by one.
+Result<OctreeLevel> rangesOf(const Octree* minMax, const TexelCodes& codes, int blockEdge) {
+    const int level = minMax == nullptr ? -1
+                                        : levelOfEdge(minMax->leafEdgeVoxels,
+                                                      int(minMax->levels.size()), blockEdge);
+    return level < 0 ? blockRanges(codes, blockEdge) : minMax->levels[level];
+}
+
+} // namespace
+
+const char* name(LiveProgress progress) {
+    constexpr const char* kNames[] = {"settled", "waiting", "building", "swapped"};
+    return kNames[static_cast<std::size_t>(progress)];
+}
+
+Result<LiveSkip> LiveSkip::start(LiveSource source, const LiveOptions& options,
+                                 CellVisibility visibility, const BuiltSkip& present) {
+    if (Result<void> ok = checkServes(options); !ok) {
+        return tl::unexpected(ok.error());
+    }
+    const auto start = Clock::now();
+    LiveSkip live;
+    live.source_ = std::move(source);
+    live.options_ = options;
+    if (Result<void> built = live.build(visibility, present); !built) {
+        return tl::unexpected(built.error());
+    }
+    live.shown_ = visibleValues(visibility);
+    live.visibility_ = std::make_shared<const CellVisibility>(std::move(visibility));
+    if (hasStructure(options.settled) && present.options == options.settled) {
+        live.settled_ = present;
+        live.settledShown_ = live.shown_;
+        live.settledServes_ = true;
+    }
+    live.startMs_ = msSince(start);
+    return live;
+}
+
+Result<void> LiveSkip::build(const CellVisibility& visibility, const BuiltSkip& present) {
+    std::optional<Octree> minMax;
+    if (present.options == options_.always) {
+        always_ = present;
+    } else {
+        if (isOctree(options_.always.structure)) {
+            Result<Octree> built = buildMinMaxOctree(*source_.codes, options_.always);
+            if (!built) {
+                return tl::unexpected(built.error());
+            }
+            minMax = std::move(*built);
+        }
+        Result<BuiltSkip> built = buildSkip({*source_.codes, *source_.texels, visibility,
+                                             source_.geometry, minMax ? &*minMax : nullptr},
+                                            options_.always);
+        if (!built) {
+            return tl::unexpected(built.error());
+        }
+        always_ = std::move(*built);
+    }
+    if (!hasStructure(options_.settled)) {
+        return {};
+    }
+    return rangesOf(minMax ? &*minMax : nullptr, *source_.codes, options_.settled.blockEdgeVoxels)
+        .map([&](OctreeLevel&& ranges) {
+            ranges_ = std::make_shared<const OctreeLevel>(std::move(ranges));
+        });
+}
+
+void LiveSkip::edit(CellVisibility visibility) {
+    rebuild_.reset();
+    framesSinceEdit_ = 0;
+    shown_ = visibleValues(visibility);
+    visibility_ = std::make_shared<const CellVisibility>(std::move(visibility));
+    // What was free then is free now.
+    settledServes_ = settled_.exists() && covers(settledShown_, shown_);
+    if (!settledServes_) {
+        always_ = underTransfer(always_, *visibility_);
+    }
+}
+
+std::vector<LiveSkip> LiveSkip::eachServing() const {
+    std::vector<LiveSkip> each{*this};
+    each[0].settledServes_ = false;
+    if (hasStructure(options_.settled)) {
+        each.push_back(*this);
+        LiveSkip& other = each.back();
+        other.settledServes_ = true;
+        if (!settled_.exists()) {
+            other.settled_ =
+                builtSkip(options_.settled,
+                          std::make_shared<const FreeLengths>(FreeLengths{
+                              .blocks = ranges_->nodes,
+                              .blockEdgeVoxels = options_.settled.blockEdgeVoxels,
+                              .counts = std::vector<std::uint8_t>(ranges_->words.size(), 255)}));
+        }
+    }
+    return each;
+}
+
+bool LiveSkip::wantsRebuild() const {
+    return hasStructure(options_.settled) && (!settled_.exists() || settledShown_ != shown_);
+}
+
+/// Where the octree shows that fewer blocks can have changed than there are. A block that two TFs
+/// show differently has one of the changed codes between its least and its greatest, and so does
+/// every node above it.
+std::optional<ChangedRegions> LiveSkip::changedRegions() const {
+    const Octree* octree = always_.octree.get();
+    if (!settled_.exists() || octree == nullptr ||
+        octree->leafEdgeVoxels != options_.settled.blockEdgeVoxels) {
+        return std::nullopt;
+    }
+    NodeTest changed;
+    if (octree->content == NodeContent::Bits) {
+        const BinSet bins = changedBins(*always_.bins, settledShown_, shown_);
+        changed.words = {bins[0], bins[1], bins[2], bins[3]};
+    } else {
+        const std::optional<CodeRange> codes = changedCodes(settledShown_, shown_);
+        SLABCAST_EXPECTS(codes.has_value(), options_.settled.blockEdgeVoxels);
+        changed.words = {codes->least, codes->most, 0, 0};
+    }
+    const int level = std::min(kRegionLevel, octree->coarsest());
+    ChangedRegions regions{level, visibleNodes(*octree, changed, level)};
+    const glm::ivec3 all = octree->levels[level].nodes;
+    // A block costs the same either way; the others have to be copied, at a fraction of that.
+    const bool fewer = 4 * regions.cubes.size() < 3 * std::size_t(all.x) * all.y * all.z;
+    return fewer ? std::optional(std::move(regions)) : std::nullopt;
+}
+
+void LiveSkip::beginRebuild() {
+    rebuildSoFarMs_ = 0.0;
+    const GridSource source{options_.settled.structure, options_.settled.blockEdgeVoxels,
+                            source_.geometry, ranges_};
+    rebuild_ = std::make_unique<GridRebuild>(source, visibility_,
+                                             EarlierGrid{settled_.lengths, changedRegions()});
+}
+
+void LiveSkip::finishRebuild() {
+    const std::shared_ptr<const FreeLengths> grid = rebuild_->finish();
+    if (grid != settled_.lengths) {
+        settled_ = builtSkip(options_.settled, grid);
+    }
+    settled_.buildMs = rebuildMs_ = rebuildSoFarMs_;
+    settledShown_ = shown_;
+    settledServes_ = true;
+    rebuild_.reset();
+}
+
+LiveProgress LiveSkip::work(double budgetMs) {
+    if (!wantsRebuild()) {
+        return LiveProgress::Settled;
+    }
+    if (framesSinceEdit_ < options_.quietFrames) {
+        ++framesSinceEdit_;
+        return LiveProgress::Waiting;
+    }
+    if (!(budgetMs > 0.0)) {
+        return LiveProgress::Waiting;
+    }
+    const auto start = Clock::now();
+    const std::chrono::duration<double, std::milli> budget(std::min(budgetMs, 1e9));
+    if (!rebuild_) {
+        beginRebuild();
+    }
+    const bool done = rebuild_->work(start + std::chrono::duration_cast<Clock::duration>(budget));
+    rebuildSoFarMs_ += msSince(start);
+    if (!done) {
+        return LiveProgress::Building;
+    }
+    finishRebuild();
+    return LiveProgress::Swapped;
+}
+
+} // namespace slabcast

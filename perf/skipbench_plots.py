@@ -1,0 +1,179 @@
+"""Plots of the ways of skipping, as SVG text. Each is drawn wide for desks and narrow for phones."""
+
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter, NullLocator
+
+from page_html import esc
+from page_svg import INK, MUTED, NARROW, PAPER_WHITE, WIDE, key, plain_number, plt, svg
+from skipbench_data import MODES, NAMES, STRUCTURES, middle
+
+COLOURS = {"none": "#8b8f96", "blocks": "#b59a6a", "proximity": "#1d5a91", "chebyshev": "#5aa0a8",
+           "partitioned": "#2f8f6b", "boolean-octree": "#d9a02b", "minmax-octree": "#b5485a",
+           "bitfield-octree": "#7a5aa8"}
+TRANSFERS = {"TF1": "#1d5a91", "TF2": "#8b8f96", "TF3": "#d9a02b", "TF4": "#b5485a", "TF5": "#2f8f6b",
+             "TF6": "#7a5aa8"}
+DIAMOND = {"marker": "D", "ms": 3.2, "mfc": PAPER_WHITE, "mec": INK, "mew": 0.8, "ls": "none", "zorder": 5}
+
+
+def key_of_structures(structures, published=False):
+    entries = [(NAMES[name], COLOURS[name], "s", False, None) for name in STRUCTURES if name in structures]
+    if published:
+        entries.append(("the paper's datasets, on its device", INK, "D", True, None))
+    return key(entries)
+
+
+def _log_axis(axis):
+    axis.set_major_locator(LogLocator(10, subs=(1, 2, 5), numticks=12))
+    axis.set_major_formatter(FuncFormatter(plain_number))
+    axis.set_minor_locator(NullLocator())
+
+
+def _id(what, bench, volume, narrow):
+    """Of a plot, unique in the page and of plain letters, which a volume's name may not be."""
+    place = [entry.get("name") for entry in bench.volumes].index(volume)
+    return f"{what}-{place}{'-n' if narrow else ''}"
+
+
+def _one_line(axes):
+    """What none takes."""
+    axes.axvline(1, color=INK, lw=0.9, zorder=4)
+
+
+def speedups(bench, volume):
+    """Bars of ray casting: a panel per mode, a bar per structure, the paper's figures as marks on it."""
+    def draw(_, narrow):
+        modes = [mode for mode in MODES if bench.of("frames", volume=volume, family="ray casting", mode=mode)]
+        if not modes:
+            return None
+        columns = 1 if narrow else len(modes)
+        lines = len(modes) if narrow else 1
+        figure, grid = plt.subplots(lines, columns, squeeze=False, sharex=True,
+                                    figsize=(NARROW, 2.1 * lines + 0.3) if narrow else (WIDE, 2.7))
+        for axes, mode in zip(grid.flat, modes):
+            rows = [row for row in bench.of("frames", volume=volume, family="ray casting", mode=mode)
+                    if row.structure != "none"]
+            for place, row in enumerate(rows):
+                axes.barh(place, row.speedup, height=0.66, color=COLOURS.get(row.structure, MUTED), zorder=2)
+                for value in bench.published(row.structure, mode):
+                    axes.plot(value, place, **DIAMOND)
+            _one_line(axes)
+            axes.set_yticks(range(len(rows)), [row.name for row in rows], fontsize=8)
+            axes.tick_params(axis="y", length=0, labelleft=narrow or axes is grid.flat[0])
+            axes.invert_yaxis()
+            axes.grid(axis="y", visible=False)
+            axes.set_title(mode)
+            axes.set_xscale("log")
+            _log_axis(axes.xaxis)
+            axes.tick_params(axis="x", labelbottom=True)
+        grid.flat[len(modes) // 2 if not narrow else -1].set_xlabel("times as fast as none (log)", color=MUTED)
+        return svg(figure, _id("speed", bench, volume, narrow))
+    return draw
+
+
+def families(bench, volume):
+    """The best of each family and structure, as a multiple of the speed of that family without skipping."""
+    def draw(_, narrow):
+        groups = [(family, mode) for family in ("hybrid", "slicing") for mode in MODES
+                  if bench.of("frames", volume=volume, family=family, mode=mode)]
+        if not groups:
+            return None
+        columns = 1 if narrow else len(groups)
+        lines = len(groups) if narrow else 1
+        figure, grid = plt.subplots(lines, columns, squeeze=False, sharex=True,
+                                    figsize=(NARROW, 2.3 * lines + 0.3) if narrow else (WIDE, 2.9))
+        for axes, (family, mode) in zip(grid.flat, groups):
+            rows = [row for row in bench.of("frames", volume=volume, family=family, mode=mode)
+                    if row.structure != "none"]
+            names = list(dict.fromkeys(row.structure for row in rows))
+            apart = 0.19 if len(rows) > len(names) else 0  # of the two kinds of planes
+            for row in rows:
+                tight = bool(row.get("tighten"))
+                place = names.index(row.structure) + (apart if tight else -apart)
+                colour = COLOURS.get(row.structure, MUTED)
+                axes.barh(place, row.speedup, height=0.34 if apart else 0.66, zorder=2, edgecolor=colour,
+                          color=colour if tight else PAPER_WHITE, linewidth=1)
+            _one_line(axes)
+            axes.set_yticks(range(len(names)), [NAMES.get(name, name) for name in names], fontsize=8)
+            axes.tick_params(axis="y", length=0, labelleft=narrow or axes is grid.flat[0])
+            axes.invert_yaxis()
+            axes.grid(axis="y", visible=False)
+            axes.set_title(f"{family}, {mode}" if family != "slicing" else "slicing")
+            axes.tick_params(axis="x", labelbottom=True)
+        grid.flat[0].set_xlim(left=0)
+        grid.flat[len(groups) // 2 if not narrow else -1].set_xlabel("times as fast as none at its best", color=MUTED)
+        return svg(figure, _id("families", bench, volume, narrow))
+    return draw
+
+
+def merging(bench, volume):
+    """A panel per block edge: merge times over partitions, against both ways to rebuild."""
+    def draw(_, narrow):
+        edges = sorted({row.get("blockEdge") for row in bench.of("rebuild", volume=volume)}, reverse=True)
+        if not edges:
+            return None
+        columns = 1 if narrow else len(edges)
+        lines = len(edges) if narrow else 1
+        counts = sorted({row.get("partitions") for row in bench.of("partitions", volume=volume)})
+        figure, grid = plt.subplots(lines, columns, squeeze=False, sharex=True,
+                                    figsize=(NARROW, 2.5 * lines) if narrow else (WIDE, 3.1))
+        for axes, edge in zip(grid.flat, edges):
+            for transfer, colour in TRANSFERS.items():
+                rows = bench.of("merge", volume=volume, blockEdge=edge, tf=transfer)
+                axes.plot([row.get("partitions") for row in rows], [row.at("updateMs", "median") for row in rows],
+                          "o-", color=colour, lw=1.3, ms=3.4, zorder=3)
+            rebuilds = bench.of("rebuild", volume=volume, blockEdge=edge, structure="chebyshev")
+            for name, style, text in (("buildMs", "-", "rebuilt"), ("ofRangesMs", (0, (4, 3)), "of kept ranges")):
+                level = middle([row.at(name, "median") for row in rebuilds])
+                if level is not None:
+                    axes.axhline(level, color=INK, lw=1.1, ls=style, zorder=2)
+                    axes.annotate(text, (1, level), xycoords=("axes fraction", "data"), xytext=(0, 2.5), ha="right",
+                                  textcoords="offset points", fontsize=7.5, color=MUTED)
+            axes.set_xscale("log", base=2)
+            axes.set_yscale("log")
+            axes.xaxis.set_major_locator(FixedLocator(counts))
+            axes.xaxis.set_major_formatter(FuncFormatter(plain_number))
+            axes.xaxis.set_minor_formatter(NullFormatter())
+            axes.set_xlim(min(counts) * 0.8, max(counts) * 1.25)
+            axes.tick_params(axis="x", labelbottom=True)
+            _log_axis(axes.yaxis)
+            axes.set_title(f"blocks of {edge}³ voxels" if edge > 1 else "single voxels")
+            axes.set_xlabel("partitions", color=MUTED)
+        grid.flat[0].set_ylabel("ms (log)")
+        return svg(figure, _id("merging", bench, volume, narrow))
+    return draw
+
+
+def key_of_transfers(bench, volume):
+    names = {row.get("tf"): row.get("tfName") for row in bench.of("rebuild", volume=volume)}
+    return key([(esc(f"{tf}: {names[tf]}"), colour, "o", False, "none") for tf, colour in TRANSFERS.items()
+                if tf in names])
+
+
+SIZED = (("build, ms", ("buildMs", "median")), ("GPU memory, MiB", ("gpuBytes",)), ("frame, ms", ("frameMs", "median")))
+
+
+def sizes(bench, narrow):
+    """Build time, memory and frame time over the cube's edge, log-log."""
+    rows = bench.of("sizes")
+    edges = sorted({row.get("edge") for row in rows})
+    if not edges:
+        return None
+    figure, grid = plt.subplots(3 if narrow else 1, 1 if narrow else 3, squeeze=False,
+                                figsize=(NARROW, 7.2) if narrow else (WIDE, 3.0))
+    for axes, (title, path) in zip(grid.flat, SIZED):
+        scale = 2 ** 20 if "MiB" in title else 1
+        for name in STRUCTURES:
+            points = sorted((row.get("edge"), value / scale) for row in rows
+                            if row.structure == name and (value := row.at(*path)))
+            if points:
+                axes.plot(*zip(*points), "o-", color=COLOURS[name], lw=1.4, ms=3.4,
+                          zorder=2 if name == "none" else 3)
+        axes.set_xscale("log", base=2)
+        axes.set_yscale("log")
+        axes.xaxis.set_major_locator(FixedLocator(edges))
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda edge, _: f"{edge:g}³"))
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.yaxis.set_major_locator(LogLocator(10, numticks=9))
+        axes.yaxis.set_major_formatter(FuncFormatter(plain_number))
+        axes.yaxis.set_minor_locator(NullLocator())
+        axes.set_title(f"{title} (log)")
+    return svg(figure, f"sizes{'-n' if narrow else ''}")

@@ -1,0 +1,281 @@
+"""The tables of the comparison: what was measured, with the papers' figures beside it."""
+
+from page_html import MISSING, esc, figures, mebibytes, millions, plural, table, times
+from page_input import number
+from skipbench_data import MODES, NAMES, STRUCTURES, span
+
+HEAT = (245, 248, 250), (29, 90, 145)  # of the slowest and the fastest cell
+SLOW = 1.6  # times the fastest: no colour beyond
+COUNTERS = ("layers_evaluated", "volume_fetches", "skip_fetches", "stretches", "blocks_visited")
+
+
+def cubed(text):
+    return str(text).replace("^3", "³")
+
+
+def mib(value):
+    """In one line."""
+    return (mebibytes(value) or MISSING).replace(" ", "&nbsp;")
+
+
+def note(text):
+    return f'<p class="note">{text}</p>'
+
+
+def bleeding(inner):
+    return f'<div class="bleed">{inner}</div>'
+
+
+def folded(summary, inner):
+    return f"<details class=long><summary>{summary}</summary>{inner}</details>"
+
+
+# Figures to reach
+
+
+def _verdict(entry):
+    reached = entry.get("reached")
+    if reached is None:
+        return MISSING
+    return "yes" if reached else "<b class=fail>no</b>"
+
+
+def _goal(entry):
+    goal = number(entry.get("goal"))
+    return MISSING if goal is None else f"{'≥' if entry.get('sense') == '>=' else '≤'} {figures(goal)}"
+
+
+def _figure_lines(entries):
+    if not entries:
+        return ""
+    lines = []
+    for entry in entries:
+        name, volume, origin = (esc(entry.get(key, "")) for key in ("name", "volume", "from"))
+        lines.append([f"{cubed(name)}<small>{volume}: {origin}</small>", figures(entry.get("value")), _goal(entry),
+                      _verdict(entry)])
+    css = ["failed" if entry.get("reached") is False else "" for entry in entries]
+    return table(["figure", "measured", "goal", "reached"], lines, css="cases bench", row_css=css)
+
+
+def figures_to_reach(bench):
+    """Those with a goal; those without wait behind a line."""
+    judged = [entry for entry in bench.figures if entry.get("goal") is not None]
+    others = [entry for entry in bench.figures if entry.get("goal") is None]
+    if not bench.figures:
+        return ""
+    rest = folded(f"{plural(len(others), 'figure')} without a goal, for comparison", _figure_lines(others))
+    return _figure_lines(judged) + (rest if others else "") + note(
+        "Worked out from the rows of this run. Times are compared within a race: the median over its rounds, each "
+        "frame against the one of the same round.")
+
+
+# Frames
+
+
+def ray_casting(bench, volume):
+    """As the octree paper's table 1, a line per structure: frame times, multiples of none's speed, the paper's."""
+    modes = [mode for mode in MODES if bench.of("frames", volume=volume, family="ray casting", mode=mode)]
+    head = ["structure", "best parameters"]
+    for mode in modes:
+        head += [f"{mode}, ms", "times as fast", "paper"]
+    lines = []
+    for first in bench.of("frames", volume=volume, family="ray casting", mode=modes[0]):
+        cells = [first.name, esc(first.parameters)]
+        for mode in modes:
+            row = bench.one("frames", volume=volume, family="ray casting", mode=mode, structure=first.structure)
+            cells += [f"{figures(row.ms)}<br><i>{span(row.spread, figures)}</i>" if row else MISSING,
+                      f"<b>{times(row.speedup)}</b>" if row else MISSING,
+                      span(bench.published(first.structure, mode), lambda value: f"{value:.2f}") or MISSING]
+        lines.append(cells)
+    paper = bench.paper("faludi")
+    told = ("Median of a turn’s frames; below it the fastest and the slowest.")
+    if paper:
+        told += (f" “Paper”: {esc(paper.get('source', ''))}, least to greatest of its datasets, on its device "
+                 f"({esc(paper.get('device', ''))}); its distance map is Euclidean, of 4-voxel blocks.")
+    return bleeding(table(head, lines, css="rows bench")) + note(told)
+
+
+def work(bench, volume):
+    lines = [[row.name, esc(row.parameters), *(millions(row.at("counters", name)) for name in COUNTERS)]
+             for row in bench.of("work", volume=volume)]
+    head = ["structure", "parameters", "layers evaluated, M", "volume fetches, M", "skip fetches, M",
+            "blocks looked at, M", "blocks visited, M"]
+    return lines and table(head, lines, css="paper bench") + note(
+        "One frame of ray casting, marching only, with the same parameters for all. A block or node is looked at "
+        "where a ray asks whether it may be left out; it is visited where the answer is no and the ray marches "
+        "through. An octree’s look takes several fetches.")
+
+
+def families(bench, volume):
+    lines = []
+    for row in bench.of("frames", volume=volume):
+        if row.get("family") != "ray casting":
+            lines.append([row.name, esc(row.get("family")), esc(row.get("mode")),
+                          f"{esc(row.get('planes'))}×{esc(row.get('layersPerPlane'))}",
+                          "rectangles" if row.get("tighten") else "sphere", esc(row.get("order", MISSING)),
+                          figures(row.ms), span(row.spread, figures), times(row.speedup),
+                          millions(row.at("counters", "layers_evaluated")),
+                          millions(row.at("counters", "skip_fetches"))])
+    head = ["structure", "family", "mode", "planes × layers", "planes are", "blended", "ms", "min – max",
+            "times as fast", "layers, M", "skip fetches, M"]
+    return lines and folded(f"{len(lines)} rows, each at its best ratio", table(head, lines, css="rows bench"))
+
+
+# Parameters
+
+
+def _shade(ms, best):
+    """A cell's colour, by how near to the fastest of all."""
+    share = max(0.0, min(1.0, 1 - (ms / best - 1) / (SLOW - 1)))
+    red, green, blue = (round(low + (high - low) * share) for low, high in zip(*HEAT))
+    return f"background:rgb({red},{green},{blue});color:{'#fff' if share > 0.55 else 'inherit'}"
+
+
+def _heat(rows, down, across, caption):
+    """The least time of all rows that fall into a cell; `down` and `across`: a key, and how to say its values."""
+    cells = {}
+    for row in rows:
+        place = row.get(down[0]), row.get(across[0])
+        cells[place] = min(row.at("ms"), cells.get(place, float("inf")))
+    best = min(cells.values())
+    columns = sorted({place[1] for place in cells})  # of one kind: numbers, or words, or nothing at all
+    lines = []
+    for value in sorted({place[0] for place in cells}):
+        found = [cells.get((value, column)) for column in columns]
+        lines.append([down[1](value), *(MISSING if ms is None else
+                                        f'<span class=heat style="{_shade(ms, best)}">{figures(ms)}</span>'
+                                        for ms in found)])
+    return table(["", *(across[1](column) for column in columns)], lines, caption, css="heatmap")
+
+
+def searched(bench, volume):
+    """Each structure's grid, folded to two of its parameters at a time."""
+    edge, level = ("blockEdge", lambda value: f"{value}³ voxels"), ("initialLevel", lambda value: f"level {value}")
+    bits, way, nothing = ("bits", lambda value: f"{value} bits"), ("traversal", str), ("", lambda _: "ms")
+    parts = []
+    for structure in STRUCTURES:
+        rows = [row for row in bench.of("search", volume=volume, structure=structure) if row.at("ms")]
+        if rows:
+            has_bits, name = rows[0].get("bits") is not None, NAMES[structure]
+            parts.append(_heat(rows, edge, bits if has_bits else nothing, name))
+            if rows[0].get("traversal"):
+                parts.append(_heat(rows, level, way, name))
+            if has_bits:
+                parts.append(_heat(rows, level, edge, name))
+    return parts and f'<div class="heats">{"".join(parts)}</div>' + note(
+        "Ray casting, marching only, on a picture of half the edge: the least of three frames, in ms; in each cell "
+        "the best of all that its two parameters leave open. The fastest three of each structure then raced at full "
+        "size, and the winner is what the other tables use. A level is how many levels below the root a walk begins.")
+
+
+# Building
+
+
+def generation(bench, volume):
+    """Built, held, and changed with the transfer function; the volume's own size beside."""
+    entry = bench.entry(volume)
+    texels, codes = number(entry.get("texelBytes")), number(entry.get("codesMs"))
+    lines = []
+    for row in bench.of("structures", volume=volume):
+        if row.get("refused"):
+            refused = f"<b class=fail>refused</b><small>{esc(row.get('refused'))}</small>"
+            lines.append([row.name, esc(row.parameters), refused, *[MISSING] * 6])
+            continue
+        gpu, host, occupied = row.at("gpuBytes"), row.at("hostBytes"), row.at("occupiedFraction")
+        built, on_gpu, updated = (row.at(name, "median") for name in ("buildMs", "gpuBuildMs", "updateMs"))
+        lines.append([row.name, esc(row.parameters), figures(built), figures(on_gpu), figures(updated), mib(gpu),
+                      f"{100 * gpu / texels:.2g} %" if gpu and texels else MISSING, mib(host) if host else MISSING,
+                      f"{100 * occupied:.3g} %" if occupied is not None else MISSING])
+    head = ["structure", "parameters", "build, ms", "on the GPU, ms", "another TF, ms", "GPU memory",
+            "of the volume’s", "host memory", "occupied"]
+    told = f"Medians of builds in turn, from codes that all share{f' ({figures(codes)} ms, once)' if codes else ''}. "
+    ours = [row and row.at("buildMs", "median") for row in (
+        bench.one("structures", volume=volume, structure=name) for name in ("proximity", "bitfield-octree"))]
+    paper = span([data["generation"][0] / data["generation"][3] for data in bench.paper("faludi").get("datasets", [])],
+                 lambda value: f"{value:.1f}")
+    if all(ours) and paper:
+        told += (f"The proximity cloud takes {ours[0] / ours[1]:.1f} times as long as the bitfield octree here, "
+                 f"{paper} times in the paper, on its GPU. ")
+    return lines and table(head, lines, css="paper bench") + note(
+        told + "“Another TF”: what a structure that does not depend on it takes under a new one; the others are "
+        "built anew.")
+
+
+# A new transfer function
+
+
+def _once(row):
+    return MISSING if row is None else "refused" if row.get("refused") else figures(row.at("initMs"))
+
+
+def _kept(row):
+    if row is None:
+        return MISSING
+    if row.get("refused"):
+        return f"<details><summary class=fail>refused</summary><span class=why>{esc(row.get('refused'))}</span></details>"
+    return mib(row.at("hostBytes"))
+
+
+def _merged(bench, row, edge, transfer, count):
+    if row is None:
+        return MISSING
+    paper = span(bench.published_merges(transfer, count), lambda value: f"{value:.1f}×") if edge == 4 else ""
+    return (f"{figures(row.at('updateMs', 'median'))} ms <b>{row.speedup:.1f}×</b>"
+            + (f"<br><i>{paper}</i>" if paper else ""))
+
+
+def _merges_at(bench, volume, edge, counts):
+    """One block edge: a line per transfer function, then what the partitions take once."""
+    lines = []
+    for rebuild in bench.of("rebuild", volume=volume, blockEdge=edge, structure="chebyshev"):
+        transfer = rebuild.get("tf", "")
+        proximity = bench.one("rebuild", volume=volume, blockEdge=edge, structure="proximity", tf=transfer)
+        lines.append([f"{esc(transfer)}<small>{esc(rebuild.get('tfName', ''))}</small>",
+                      figures(rebuild.at("buildMs", "median")), figures(rebuild.at("ofRangesMs", "median")),
+                      figures(proximity.at("buildMs", "median")) if proximity else MISSING,
+                      *(_merged(bench, bench.one("merge", volume=volume, blockEdge=edge, tf=transfer,
+                                                 partitions=count), edge, transfer, count) for count in counts)])
+    made = [bench.one("partitions", volume=volume, blockEdge=edge, partitions=count) for count in counts]
+    lines.append(["one time, ms", "", "", "", *(_once(row) for row in made)])
+    lines.append(["memory", "", "", "", *(_kept(row) for row in made)])
+    head = [f"blocks of {edge}³" if edge > 1 else "single voxels", "rebuilt, ms", "of kept ranges, ms",
+            "proximity, ms", *(f"{count} partitions" for count in counts)]
+    return bleeding(table(head, lines, css="rows bench"))
+
+
+def merging(bench, volume):
+    """Rebuilding over merging, for every edge, transfer function and number of partitions; the paper's below ours."""
+    counts = sorted({row.get("partitions") for row in bench.of("partitions", volume=volume)})
+    edges = sorted({row.get("blockEdge") for row in bench.of("rebuild", volume=volume)}, reverse=True)
+    told = ("Times to follow a change of transfer function on the processor; in bold how many times faster merging is "
+            "than rebuilding the Chebyshev map in full. “Of kept ranges” rebuilds from the least and greatest value "
+            "of every block, which no transfer function changes: ours, not the paper’s. The least value has a "
+            "partition of its own.")
+    paper = bench.paper("rauter")
+    if paper:
+        told += (f" Grey below: {esc(paper.get('source', ''))}, least to greatest of its datasets, on its device "
+                 f"({esc(paper.get('device', ''))}).")
+    return "".join(_merges_at(bench, volume, edge, counts) for edge in edges) + note(told)
+
+
+# Cost against size
+
+
+def sizes(bench):
+    rows = bench.of("sizes")
+    edges = sorted({row.get("edge") for row in rows})
+    lines = []
+    for name in STRUCTURES:
+        cells = [NAMES[name]]
+        for edge in edges:
+            row = bench.one("sizes", structure=name, edge=edge)
+            if row is None:
+                cells += [MISSING] * 3
+            else:
+                cells += ["refused" if row.get("refused") else figures(row.at("buildMs", "median")),
+                          mib(row.at("gpuBytes")), figures(row.ms)]
+        lines.append(cells)
+    head = ["structure"]
+    for edge in edges:
+        head += [f"{edge}³: build, ms", "GPU memory", "frame, ms"]
+    return bleeding(table(head, lines, css="rows bench"))

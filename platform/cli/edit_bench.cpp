@@ -1,0 +1,211 @@
+#include "platform/cli/edit_bench.h"
+
+#include <chrono>
+
+#include "core/frame/warm_up.h"
+#include "core/gl/api.h"
+#include "platform/cli/progress.h"
+
+namespace slabcast {
+
+namespace {
+
+/// A span of time, and what follows it.
+class Stopwatch {
+public:
+    double lapMs() {
+        const auto now = std::chrono::steady_clock::now();
+        const std::chrono::duration<double, std::milli> lap = now - begin_;
+        begin_ = now;
+        return lap.count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// Without skipping, and without what it adds.
+Settings plain(Settings settings) {
+    settings.skip = SkipStructure::None;
+    settings.tighten = false;
+    return settings;
+}
+
+} // namespace
+
+Result<EditBench> EditBench::open(Stage stage, const EditOptions& options, const LiveOptions& live,
+                                  const TransferFunction& start) {
+    Result<Renderer> renderer = Renderer::create(stage.session().caps);
+    if (!renderer) {
+        return tl::unexpected(renderer.error());
+    }
+    EditBench bench(std::move(stage), std::move(*renderer), options);
+    return bench.makeScenes(live, start).and_then([&] { return bench.warmUp(); }).map([&] {
+        return std::move(bench);
+    });
+}
+
+Result<void> EditBench::makeScenes(const LiveOptions& live, const TransferFunction& start) {
+    naiveSkip_ = live.settled.structure != SkipStructure::None ? live.settled : SkipOptions{};
+    Result<Scene> naive = stage_.variation(start, naiveSkip_);
+    Result<Scene> edited = stage_.variation(start, live.settled);
+    Result<Scene> octree = stage_.variation(start, live.always);
+    for (const Result<Scene>* made : {&naive, &edited, &octree}) {
+        if (!*made) {
+            return tl::unexpected(made->error());
+        }
+    }
+    naive_ = std::move(*naive);
+    live_ = std::move(*edited);
+    octree_ = std::move(*octree);
+    LiveOptions octreeAlone = live;
+    octreeAlone.settled.structure = SkipStructure::None;
+    return live_.startEditing(live).and_then([&] { return octree_.startEditing(octreeAlone); });
+}
+
+Result<void> EditBench::warmUp() {
+    stage_.show(naive_);
+    settings_ = options_.settings;
+    settings_.skip.reset(); // by what serves
+    Result<FramePlan> decided = stage_.decide(settings_);
+    if (!decided) {
+        return tl::unexpected(decided.error());
+    }
+    firstPlan_ = std::move(*decided);
+    settings_.planes.reset();
+    settings_.layersPerPlane = firstPlan_.layersPerPlane;
+    settings_.form = firstPlan_.variant.unroll > 0 ? SegmentForm::Unrolled : SegmentForm::Loop;
+    const Progress progress("warming up");
+    Result<void> done = stage_.prepare(firstPlan_).and_then([&] {
+        const GLenum format = firstPlan_.target == TargetFormat::Rgba8 ? GL_RGBA8 : GL_RGBA16F;
+        return target_.resize(options_.size.x, options_.size.y, {format});
+    });
+    for (Renderer* renderer : {&renderer_, &stage_.renderer()}) {
+        done = done.and_then([&] {
+            return warmUpForEditing(*renderer, live_, settings_, stage_.session().caps, {},
+                                    stage_.views(0.0));
+        });
+    }
+    return done;
+}
+
+Result<FramePlan> EditBench::planOf(const Scene& scene, const Settings& settings) const {
+    return plan(scene.facts(), settings, stage_.session().caps, {});
+}
+
+Result<void> EditBench::draw(Renderer& renderer, const Scene& scene, const FramePlan& plan,
+                             double turnDegrees) {
+    std::vector<ViewTarget> views = stage_.views(turnDegrees);
+    for (ViewTarget& view : views) {
+        view.framebuffer = target_.framebuffer();
+    }
+    target_.begin();
+    Result<void> drawn = renderer.draw(scene, plan, views);
+    gl::Finish();
+    return drawn;
+}
+
+/// The frame as an application has it: all of it counts.
+Result<void> EditBench::drawLive(const EditFrame& frame, double turnDegrees, EditRow& row) {
+    Stopwatch watch;
+    if (frame.newTransfer) {
+        if (Result<void> edited = live_.edit(*frame.newTransfer); !edited) {
+            return edited;
+        }
+    }
+    row.editMs = watch.lapMs();
+    row.progress = live_.work(options_.workBudgetMs);
+    row.workMs = watch.lapMs();
+    const Result<FramePlan> plan = planOf(live_, settings_);
+    Result<void> done = plan ? renderer_.prepare(live_, *plan) : tl::unexpected(plan.error());
+    row.prepareMs = watch.lapMs();
+    done = done.and_then([&] { return draw(renderer_, live_, *plan, turnDegrees); });
+    row.drawMs = watch.lapMs();
+    row.frameMs = row.editMs + row.workMs + row.prepareMs + row.drawMs;
+    if (done) {
+        row.structure = plan->drawsNothing ? "nothing drawn" : name(plan->skip);
+    }
+    return done;
+}
+
+Result<void> EditBench::drawOctree(const EditFrame& frame, double turnDegrees, EditRow& row) {
+    Settings settings = settings_;
+    settings.skip = octree_.skip().options.structure;
+    Result<void> done;
+    if (frame.newTransfer) {
+        done = octree_.edit(*frame.newTransfer);
+    }
+    const Result<FramePlan> plan = planOf(octree_, settings);
+    done = plan ? done.and_then([&] { return stage_.renderer().prepare(octree_, *plan); })
+                : tl::unexpected(plan.error());
+    std::vector<double> times;
+    for (int k = -1; k < options_.octreeFrames && done; ++k) { // -1 warms up
+        Stopwatch watch;
+        done = draw(stage_.renderer(), octree_, *plan, turnDegrees);
+        if (k >= 0) {
+            times.push_back(watch.lapMs());
+        }
+    }
+    row.octreeMs = summarise(times).median;
+    return done;
+}
+
+/// Builds all anew where there is an edit, and only draws where there is none.
+Result<void> EditBench::drawNaive(const EditFrame& frame, double turnDegrees, EditRow& row) {
+    Renderer& renderer = stage_.renderer();
+    const auto prepared = [&] {
+        return planOf(naive_, settings_).and_then([&](FramePlan plan) {
+            return renderer.prepare(naive_, plan).map([&] { return plan; });
+        });
+    };
+    Result<FramePlan> plan = prepared(); // its textures, which the octree's took turns with
+    Stopwatch watch;
+    if (frame.newTransfer && plan) {
+        Look look = naive_.look();
+        look.tf = *frame.newTransfer;
+        plan = naive_.setLook(look, naiveSkip_, naive_.maxTableSize()).and_then(prepared);
+    }
+    if (!plan) {
+        return tl::unexpected(plan.error());
+    }
+    Result<void> done = draw(renderer, naive_, *plan, turnDegrees);
+    row.naiveMs = watch.lapMs();
+    return done;
+}
+
+/// With the naive policy's scene, which knows of no edits.
+Result<void> EditBench::compare(double turnDegrees, const std::vector<glm::vec4>& picture,
+                                EditRow& row) {
+    const Result<FramePlan> plan = planOf(naive_, plain(settings_));
+    if (!plan) {
+        return tl::unexpected(plan.error());
+    }
+    return stage_.renderer()
+        .prepare(naive_, *plan)
+        .and_then([&] { return draw(stage_.renderer(), naive_, *plan, turnDegrees); })
+        .map([&] { row.equal = target_.read() == picture; });
+}
+
+Result<EditRow> EditBench::replay(const EditFrame& frame, double turnDegrees) {
+    EditRow row{.step = frame.step, .edited = frame.newTransfer.has_value()};
+    std::vector<glm::vec4> picture;
+    Result<void> done = drawLive(frame, turnDegrees, row);
+    if (done && options_.verify) {
+        picture = target_.read();
+    }
+    done = done.and_then([&] { return drawOctree(frame, turnDegrees, row); }).and_then([&] {
+        return drawNaive(frame, turnDegrees, row);
+    });
+    if (done && options_.verify) {
+        done = compare(turnDegrees, picture, row);
+    }
+    if (!done) {
+        return tl::unexpected(done.error());
+    }
+    if (const Result<FramePlan> plan = planOf(live_, settings_); plan) {
+        row.counters = renderer_.countWork(live_, *plan, stage_.views(turnDegrees));
+    }
+    return row;
+}
+
+} // namespace slabcast

@@ -1,0 +1,183 @@
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/core.h>
+
+#include "platform/cli/commands.h"
+#include "platform/cli/edit_summary.h"
+#include "platform/cli/progress.h"
+#include "platform/cli/report_files.h"
+#include "platform/io/atomic_file.h"
+#include "platform/io/json_checks.h"
+
+namespace slabcast {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// What --skip names serves once a TF has settled or, where it depends on none, always.
+LiveOptions liveOptions(const EditOptions& options) {
+    LiveOptions live{.quietFrames = options.quietFrames};
+    const auto asked = [&](SkipStructure structure) {
+        SkipOptions skip = options.skip;
+        skip.structure = structure;
+        return skip;
+    };
+    const SkipStructure named = options.settings.skip.value_or(live.settled.structure);
+    const bool dependsOnTransfer = infoOf(named).dependsOnTransfer;
+    live.always = asked(dependsOnTransfer ? live.always.structure : named);
+    live.settled = asked(dependsOnTransfer ? named : SkipStructure::None);
+    return live;
+}
+
+/// The start is the script's own, or what --tf says.
+Result<EditScript> scriptOf(const EditOptions& options, const Stage& stage) {
+    const Scene& scene = stage.scene();
+    const TransferByName byName = [&](const std::string& name) {
+        return chooseTransferFunction(name, scene, stage.info().modality);
+    };
+    if (!options.scriptFile.empty()) {
+        return readText(options.scriptFile, "script").and_then([&](const std::string& text) {
+            return parseEditScript(text, fs::path(options.scriptFile).filename().string(), byName,
+                                   scene.statistics());
+        });
+    }
+    if (!options.interpolate) {
+        return usualScript(scene.look().tf, scene.statistics(), options.frames);
+    }
+    const auto& [first, second] = *options.interpolate;
+    return byName(first).and_then([&, &nameOfSecond = second](const TransferFunction& a) {
+        return byName(nameOfSecond).map([&](const TransferFunction& b) {
+            return interpolation(a, b, options.frames);
+        });
+    });
+}
+
+Result<std::vector<EditRow>> replayAll(EditBench& bench, const EditScript& script,
+                                       const EditOptions& options) {
+    std::vector<EditRow> rows;
+    Progress progress;
+    const auto count = script.frames.size();
+    for (const EditFrame& frame : script.frames) {
+        progress.show(fmt::format("frame {} of {}: {}", rows.size() + 1, count, frame.step));
+        const double turn =
+            options.turnDegrees * static_cast<double>(rows.size()) / static_cast<double>(count);
+        Result<EditRow> row = bench.replay(frame, turn);
+        if (!row) {
+            return tl::unexpected(row.error());
+        }
+        rows.push_back(std::move(*row));
+    }
+    return rows;
+}
+
+/// What is built when, and what it takes.
+json buildsOf(const EditBench& bench) {
+    const LiveSkip& live = bench.live();
+    json builds = {{"always",
+                    {{"structure", name(live.always().options.structure)},
+                     {"blockEdge", live.always().options.blockEdgeVoxels},
+                     {"ms", live.startMs()},
+                     {"gpuBytes", gpuBytes(live.always())}}},
+                   {"naiveMs", bench.naiveBuildMs()}};
+    if (live.settled().exists()) {
+        builds["settled"] = {{"structure", name(live.settled().options.structure)},
+                             {"blockEdge", live.settled().options.blockEdgeVoxels},
+                             {"lastMs", live.rebuildMs()},
+                             {"gpuBytes", gpuBytes(live.settled())}};
+    }
+    return builds;
+}
+
+json conditionsOf(const EditBench& bench, const EditOptions& o, const EditScript& script) {
+    const OrbitCamera& c = o.camera;
+    return {{"size", {o.size.x, o.size.y}},
+            {"camera", {c.azimuthDegrees, c.elevationDegrees, c.distanceRadii}},
+            {"turnDegrees", o.turnDegrees},
+            {"start", script.start.name},
+            {"edits", !o.scriptFile.empty() ? "script"
+                      : o.interpolate       ? "interpolation"
+                                            : "usual"},
+            {"classification", name(o.settings.classification)},
+            {"planes", bench.firstPlan().planes},
+            {"layersPerPlane", bench.firstPlan().layersPerPlane},
+            {"workBudgetMs", o.workBudgetMs},
+            {"quietFrames", o.quietFrames},
+            {"octreeFrames", o.octreeFrames},
+            {"verified", o.verify}};
+}
+
+constexpr CsvColumn kColumns[] = {{"frame", "/frame"},
+                                  {"step", "/step"},
+                                  {"edit", "/edit"},
+                                  {"progress", "/progress"},
+                                  {"structure", "/structure"},
+                                  {"frame_ms", "/frameMs"},
+                                  {"edit_ms", "/parts/editMs"},
+                                  {"work_ms", "/parts/workMs"},
+                                  {"prepare_ms", "/parts/prepareMs"},
+                                  {"draw_ms", "/parts/drawMs"},
+                                  {"octree_ms", "/octreeMs"},
+                                  {"over_octree", "/overOctree"},
+                                  {"naive_ms", "/naiveMs"},
+                                  {"equal", "/equal"},
+                                  {"fragments", "/counters/fragments"},
+                                  {"layers_evaluated", "/counters/layers_evaluated"},
+                                  {"layers_skipped", "/counters/layers_skipped"},
+                                  {"volume_fetches", "/counters/volume_fetches"},
+                                  {"skip_fetches", "/counters/skip_fetches"}};
+
+Result<void> write(const fs::path& folder, const json& report) {
+    return writeFileAtomically(folder / "edit.csv", csvOf(report["rows"], kColumns))
+        .and_then([&] { return writeFileAtomically(folder / "edit.json", report.dump(2) + "\n"); })
+        .and_then([&] { return writePage(folder, "edit_report.py", "edit.json and edit.csv"); });
+}
+
+} // namespace
+
+Result<void> editCommand(const EditOptions& options, const std::string& command) {
+    const LiveOptions live = liveOptions(options);
+    SceneOptions opened = options;
+    opened.settings.skip = live.settled.structure;
+    opened.skip = live.settled;
+    Result<Stage> stage = Stage::open(opened);
+    if (!stage) {
+        return tl::unexpected(stage.error());
+    }
+    Result<EditScript> script = scriptOf(options, *stage);
+    if (!script) {
+        return tl::unexpected(script.error());
+    }
+    Result<EditBench> bench = EditBench::open(std::move(*stage), options, live, script->start);
+    if (!bench) {
+        return tl::unexpected(bench.error());
+    }
+    if (Result<void> made = makeReportFolder(options.outputFolder); !made) {
+        return made;
+    }
+    const Result<std::vector<EditRow>> rows = replayAll(*bench, *script, options);
+    if (!rows) {
+        return tl::unexpected(rows.error());
+    }
+    json report = reportHeader(bench->stage(), command);
+    report["conditions"] = conditionsOf(*bench, options, *script);
+    report["builds"] = buildsOf(*bench);
+    report["summary"] = summaryOf(*rows, options);
+    for (const EditRow& row : *rows) {
+        report["rows"].push_back(toJson(row, report["rows"].size()));
+    }
+    return write(options.outputFolder, report).and_then([&]() -> Result<void> {
+        const std::int64_t wrong =
+            std::count_if(rows->begin(), rows->end(),
+                          [](const EditRow& row) { return !row.equal.value_or(true); });
+        return wrong == 0 ? Result<void>{}
+                          : fail(ErrorCode::Internal,
+                                 fmt::format("{} of {} frames are not what drawing from scratch "
+                                             "gives: see edit.csv in {}; report it",
+                                             wrong, rows->size(), options.outputFolder));
+    });
+}
+
+} // namespace slabcast

@@ -1,0 +1,123 @@
+#include "platform/cli/edit_summary.h"
+
+#include <algorithm>
+#include <map>
+
+namespace slabcast {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr double kBudgetOverOctree = 1.5;
+
+/// A number of every row that `has` one.
+template <class Number, class Has>
+std::vector<double> numbersOf(const std::vector<EditRow>& rows, Number number, Has has) {
+    std::vector<double> numbers;
+    for (const EditRow& row : rows) {
+        if (has(row)) {
+            numbers.push_back(number(row));
+        }
+    }
+    return numbers;
+}
+
+template <class Number>
+std::vector<double> numbersOf(const std::vector<EditRow>& rows, Number number) {
+    return numbersOf(rows, number, [](const EditRow&) { return true; });
+}
+
+std::int64_t over(const std::vector<double>& ms, double budgetMs) {
+    return std::count_if(ms.begin(), ms.end(), [=](double one) { return one > budgetMs; });
+}
+
+/// From each edit to the first frame that equals one from scratch, that frame counted.
+json framesToCorrect(const std::vector<EditRow>& rows) {
+    std::size_t most = 0;
+    for (std::size_t edit = 0; edit < rows.size(); ++edit) {
+        if (!rows[edit].edited) {
+            continue;
+        }
+        const auto correct =
+            std::find_if(rows.begin() + static_cast<std::ptrdiff_t>(edit), rows.end(),
+                         [](const EditRow& row) { return row.equal.value_or(false); });
+        most = std::max(most, static_cast<std::size_t>(correct - rows.begin()) - edit + 1);
+    }
+    return most;
+}
+
+} // namespace
+
+json toJson(const EditRow& row, std::size_t index) {
+    json result = {{"frame", index},
+                   {"step", row.step},
+                   {"edit", row.edited},
+                   {"progress", name(row.progress)},
+                   {"structure", row.structure},
+                   {"frameMs", row.frameMs},
+                   {"parts",
+                    {{"editMs", row.editMs},
+                     {"workMs", row.workMs},
+                     {"prepareMs", row.prepareMs},
+                     {"drawMs", row.drawMs}}},
+                   {"octreeMs", row.octreeMs},
+                   {"overOctree", row.frameMs / row.octreeMs},
+                   {"naiveMs", row.naiveMs},
+                   {"counters", toJson(row.counters)}};
+    if (row.equal) {
+        result["equal"] = *row.equal;
+    }
+    return result;
+}
+
+json summaryOf(const std::vector<EditRow>& rows, const EditOptions& options) {
+    const auto isEdit = [](const EditRow& row) { return row.edited; };
+    const auto frameMs = [](const EditRow& row) { return row.frameMs; };
+    const auto naiveMs = [](const EditRow& row) { return row.naiveMs; };
+    const auto octreeMs = [](const EditRow& row) { return row.octreeMs; };
+    const FrameTimes ratios =
+        summarise(numbersOf(rows, [](const EditRow& row) { return row.frameMs / row.octreeMs; }));
+    const FrameTimes naiveRatios =
+        summarise(numbersOf(rows, [](const EditRow& row) { return row.naiveMs / row.octreeMs; }));
+    const FrameTimes octree = summarise(numbersOf(rows, octreeMs));
+    const double budget = options.budgetMs.value_or(kBudgetOverOctree * octree.median);
+    std::map<std::string, int> structures;
+    for (const EditRow& row : rows) {
+        ++structures[row.structure];
+    }
+    json summary = {{"worst_over_octree_frame", ratios.max},
+                    {"over_octree_frame", toJson(ratios)},
+                    {"frames_over_1.5_octree_frames",
+                     std::count_if(rows.begin(), rows.end(),
+                                   [](const EditRow& row) {
+                                       return row.frameMs > kBudgetOverOctree * row.octreeMs;
+                                   })},
+                    {"frames", rows.size()},
+                    {"edits", std::count_if(rows.begin(), rows.end(), isEdit)},
+                    {"budget_ms", budget},
+                    {"budget_given", options.budgetMs.has_value()},
+                    {"frames_over_budget", over(numbersOf(rows, frameMs), budget)},
+                    {"frame_ms", toJson(summarise(numbersOf(rows, frameMs)))},
+                    {"edit_frame_ms", toJson(summarise(numbersOf(rows, frameMs, isEdit)))},
+                    {"edit_ms", toJson(summarise(numbersOf(
+                                    rows, [](const EditRow& row) { return row.editMs; }, isEdit)))},
+                    {"octree_frame_ms", toJson(octree)},
+                    {"naive",
+                     {{"frame_ms", toJson(summarise(numbersOf(rows, naiveMs)))},
+                      {"edit_frame_ms", toJson(summarise(numbersOf(rows, naiveMs, isEdit)))},
+                      {"worst_over_octree_frame", naiveRatios.max},
+                      {"frames_over_budget", over(numbersOf(rows, naiveMs), budget)}}},
+                    {"frames_by_structure", structures},
+                    {"hand_overs", std::count_if(rows.begin(), rows.end(), [](const EditRow& row) {
+                         return row.progress == LiveProgress::Swapped;
+                     })}};
+    if (options.verify) {
+        summary["frames_equal"] = std::count_if(
+            rows.begin(), rows.end(), [](const EditRow& row) { return row.equal.value_or(false); });
+        summary["frames_to_correct"] = framesToCorrect(rows);
+    }
+    return summary;
+}
+
+} // namespace slabcast

@@ -1,0 +1,262 @@
+#include "platform/cli/skipbench_figures.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "platform/cli/skipbench_race.h"
+
+namespace slabcast {
+
+namespace {
+
+using nlohmann::json;
+using Value = std::optional<double>;
+
+/// All that has these values.
+std::vector<const json*> rowsWith(const json& rows, const json& keys) {
+    std::vector<const json*> found;
+    for (const json& row : rows) {
+        const bool alike = std::all_of(keys.items().begin(), keys.items().end(), [&](auto item) {
+            return row.contains(item.key()) && row[item.key()] == item.value();
+        });
+        if (alike) {
+            found.push_back(&row);
+        }
+    }
+    return found;
+}
+
+const json* rowWith(const json& rows, const json& keys) {
+    const std::vector<const json*> found = rowsWith(rows, keys);
+    return found.empty() ? nullptr : found.front();
+}
+
+Value numberAt(const json* row, const char* pointer) {
+    const json::json_pointer place(pointer);
+    const bool there = row != nullptr && row->contains(place) && row->at(place).is_number();
+    return there ? Value(row->at(place).get<double>()) : std::nullopt;
+}
+
+Value quotient(Value a, Value b) {
+    return a && b && *b > 0.0 ? Value(*a / *b) : std::nullopt;
+}
+
+/// The row of the least or of the greatest value.
+const json* extreme(const std::vector<const json*>& rows, const char* pointer, bool least) {
+    const json* best = nullptr;
+    for (const json* row : rows) {
+        const Value value = numberAt(row, pointer);
+        const Value bestValue = numberAt(best, pointer);
+        if (value && (!bestValue || (least ? *value < *bestValue : *value > *bestValue))) {
+            best = row;
+        }
+    }
+    return best;
+}
+
+/// Time of one row over another's of the same race.
+Value pairedTimes(const json* a, const json* b) {
+    if (a == nullptr || b == nullptr) {
+        return std::nullopt;
+    }
+    return pairedRatio(a->at("samples").get<std::vector<double>>(),
+                       b->at("samples").get<std::vector<double>>());
+}
+
+enum class Goal { AtLeast, AtMost };
+
+json figure(std::string name, const json& volume, Value value, std::optional<double> goal,
+            Goal sense, std::string from) {
+    json reached;
+    if (value && goal) {
+        reached = sense == Goal::AtLeast ? *value >= *goal : *value <= *goal;
+    }
+    return {{"name", std::move(name)},
+            {"volume", volume["name"]},
+            {"value", value ? json(*value) : json()},
+            {"goal", goal ? json(*goal) : json()},
+            {"sense", sense == Goal::AtLeast ? ">=" : "<="},
+            {"reached", std::move(reached)},
+            {"from", std::move(from)}};
+}
+
+/// Skull CT under bone is what most goals were set for.
+bool isBone(const json& volume) {
+    return volume["modality"] == "ct" && volume["transferFunction"] == "CT bone";
+}
+
+std::optional<double> goalIf(bool meant, double goal) {
+    return meant ? std::optional(goal) : std::nullopt;
+}
+
+/// Ray casting of one volume.
+struct RayCasting {
+    const json& rows;
+    const json& volume;
+
+    const json* row(const char* structure, const char* mode) const {
+        return rowWith(rows, {{"table", "frames"},
+                              {"volume", volume["name"]},
+                              {"family", "ray casting"},
+                              {"mode", mode},
+                              {"structure", structure}});
+    }
+    const json* distanceMap(const char* mode) const {
+        return extreme({row("proximity", mode), row("chebyshev", mode)}, "/frameMs/median", true);
+    }
+    Value ofDistanceMap(const char* structure) const {
+        return pairedTimes(row(structure, "marching only"), distanceMap("marching only"));
+    }
+};
+
+void addRayCasting(json& figures, const json& rows, const json& volume) {
+    const RayCasting cast{rows, volume};
+    const bool bone = isBone(volume);
+    for (const auto& [mode, goal] : {std::pair{"marching only", 2.0}, {"early exit", 3.0}}) {
+        const json* map = cast.distanceMap(mode);
+        figures.push_back(figure(
+            fmt::format("distance map against none, {}", mode), volume, numberAt(map, "/speedup"),
+            goalIf(bone, goal), Goal::AtLeast,
+            fmt::format("times as fast; {}", map ? map->value("structure", "") : "not measured")));
+    }
+    const Value bitfield = cast.ofDistanceMap("bitfield-octree");
+    const Value minMax = cast.ofDistanceMap("minmax-octree");
+    figures.push_back(figure("bitfield octree against the distance map, marching only", volume,
+                             bitfield, goalIf(bone, 1.7), Goal::AtMost, "its time over the map's"));
+    figures.push_back(figure("bitfield octree against the min-max octree, marching only", volume,
+                             quotient(bitfield, minMax), goalIf(bone, 1.0), Goal::AtMost,
+                             "as multiples of the distance map's time"));
+}
+
+void addBlocks(json& figures, const json& rows, const json& volume) {
+    const auto work = [&](const char* structure, const char* counter) {
+        return numberAt(
+            rowWith(rows,
+                    {{"table", "work"}, {"volume", volume["name"]}, {"structure", structure}}),
+            counter);
+    };
+    const bool gap = volume["input"].get<std::string>().starts_with("phantom:gap");
+    const struct {
+        const char* name;
+        const char* counter;
+        const char* from;
+        std::optional<double> goal;
+    } kinds[] = {
+        {"blocks visited", "/counters/blocks_visited",
+         "leaves marched through, since they may show something, along all rays", goalIf(gap, 0.6)},
+        {"blocks looked at", "/counters/stretches", "those, and nodes leapt over", std::nullopt}};
+    for (const auto& kind : kinds) {
+        figures.push_back(figure(
+            fmt::format("bitfield octree against the min-max octree, {}", kind.name), volume,
+            quotient(work("bitfield-octree", kind.counter), work("minmax-octree", kind.counter)),
+            kind.goal, Goal::AtMost, fmt::format("{}; leaves of 4 voxels, 32 bits", kind.from)));
+    }
+}
+
+/// The best of these rows against none at its best ratio.
+json hybridFigure(const std::vector<const json*>& rows, const json& volume, const std::string& name,
+                  std::optional<double> goal) {
+    const json* best = extreme(rows, "/speedup", false);
+    const std::string by = best ? fmt::format("{}, {} layers a plane", best->value("structure", ""),
+                                              best->value("layersPerPlane", 0))
+                                : "not measured";
+    return figure(name, volume, numberAt(best, "/speedup"), goal, Goal::AtLeast,
+                  "times as fast, each at its best ratio; " + by);
+}
+
+void addHybrid(json& figures, const json& rows, const json& volume) {
+    for (const char* mode : {"early exit", "marching only"}) {
+        for (const bool tighten : {true, false}) {
+            std::vector<const json*> skipping = rowsWith(rows, {{"table", "frames"},
+                                                                {"volume", volume["name"]},
+                                                                {"family", "hybrid"},
+                                                                {"mode", mode},
+                                                                {"tighten", tighten}});
+            std::erase_if(skipping, [](const json* row) { return (*row)["structure"] == "none"; });
+            const char* planes = tighten ? "planes as rectangles" : "planes of the sphere";
+            // Rectangles are the structure's too, and what is drawn unless told otherwise.
+            figures.push_back(hybridFigure(
+                skipping, volume,
+                fmt::format("hybrid against its own best without, {}, {}", mode, planes),
+                goalIf(tighten && isBone(volume), 2.0)));
+        }
+    }
+}
+
+void addMerging(json& figures, const json& rows, const json& volume) {
+    for (const int edge : {4, 2, 1}) {
+        std::vector<double> speedups;
+        for (const json* row : rowsWith(rows, {{"table", "merge"},
+                                               {"volume", volume["name"]},
+                                               {"blockEdge", edge},
+                                               {"partitions", 16}})) {
+            speedups.push_back(row->at("speedup").get<double>());
+        }
+        const FrameTimes all = summarise(speedups); // no times, but a median all the same
+        figures.push_back(
+            figure(fmt::format("merging 16 partitions against rebuilding, blocks of {}", edge),
+                   volume, speedups.empty() ? std::nullopt : Value(all.median),
+                   goalIf(edge == 4, 10.0), Goal::AtLeast,
+                   fmt::format("times as fast, median of {} transfer functions ({:.3g} to {:.3g})",
+                               speedups.size(), all.min, all.max)));
+    }
+}
+
+void addBuilds(json& figures, const json& rows, const json& volume) {
+    const json* row = rowWith(rows, {{"table", "sizes"},
+                                     {"volume", volume["name"]},
+                                     {"edge", 256},
+                                     {"structure", "bitfield-octree"}});
+    if (row == nullptr) {
+        return; // not of the sizes that were asked for
+    }
+    constexpr double kVoxels = 256.0 * 256.0 * 256.0;
+    figures.push_back(figure("bitfield octree of 256^3, build", volume,
+                             numberAt(row, "/buildMs/median"), 60.0, Goal::AtMost,
+                             "ms on the processor; leaves of 4 voxels, 32 bits"));
+    figures.push_back(figure("bitfield octree of 256^3, memory", volume,
+                             quotient(numberAt(row, "/gpuBytes"), 2.0 * kVoxels), 0.05,
+                             Goal::AtMost, "of a 16-bit volume's"));
+}
+
+} // namespace
+
+json figuresOf(const json& volumes, const json& rows) {
+    json figures = json::array();
+    for (const json& volume : volumes) {
+        addRayCasting(figures, rows, volume);
+        addBlocks(figures, rows, volume);
+        addHybrid(figures, rows, volume);
+        addMerging(figures, rows, volume);
+        addBuilds(figures, rows, volume);
+    }
+    return figures;
+}
+
+std::string summaryOf(const json& figures) {
+    std::vector<std::string> missed;
+    int reached = 0;
+    int judged = 0;
+    for (const json& figure : figures) {
+        if (figure["reached"].is_null()) {
+            continue;
+        }
+        ++judged;
+        if (figure["reached"].get<bool>()) {
+            ++reached;
+        } else {
+            missed.push_back(fmt::format(
+                "{} ({}): {:.3g} {} {:g} does not hold", figure["name"].get<std::string>(),
+                figure["volume"].get<std::string>(), figure["value"].get<double>(),
+                figure["sense"].get<std::string>(), figure["goal"].get<double>()));
+        }
+    }
+    return fmt::format("summary: {} of {} figures reached{}{}", reached, judged,
+                       missed.empty() ? "" : "; ", fmt::join(missed, "; "));
+}
+
+} // namespace slabcast

@@ -1,0 +1,210 @@
+#include "platform/cli/skipbench_frames.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include <fmt/core.h>
+
+#include "platform/cli/skipbench_race.h"
+
+namespace slabcast {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr double kRaceMs = 30e3;
+constexpr double kQuickRaceMs = 6e3;
+constexpr int kHybridLayers[] = {8, 16, 32, 64};
+constexpr int kShrink = 2; // of the picture's edge, where ratios are tried
+constexpr int kTimedFrames = 3;
+
+/// A subject with planes of the one kind or the other.
+struct Seat {
+    const Subject* subject;
+    bool tighten;
+};
+
+/// Rectangles come from a structure: none has the sphere's planes only.
+std::vector<Seat> seatsOf(std::span<const Subject> subjects, bool onlyRectangles = false) {
+    std::vector<Seat> seats;
+    for (const Subject& subject : subjects) {
+        const bool none = subject.options.structure == SkipStructure::None;
+        if (none || !onlyRectangles) {
+            seats.push_back({&subject, false});
+        }
+        if (!none) {
+            seats.push_back({&subject, true});
+        }
+    }
+    return seats;
+}
+
+json rowOf(const SkipBench& bench, const char* table, const char* family, const BenchMode& mode,
+           const Subject& subject) {
+    json row = bench.row(table);
+    row.update(toJson(subject.options));
+    row.update({{"family", family}, {"mode", mode.name}});
+    return row;
+}
+
+Result<void> raceOf(SkipBench& bench, const std::vector<Entrant>& entrants) {
+    const Result<json> rows = race(bench.stage, entrants, bench.options.frames,
+                                   bench.options.quick ? kQuickRaceMs : kRaceMs);
+    if (!rows) {
+        return tl::unexpected(rows.error());
+    }
+    bench.rows.insert(bench.rows.end(), rows->begin(), rows->end());
+    return {};
+}
+
+Result<void> castRays(SkipBench& bench, std::span<const Subject> subjects) {
+    for (const BenchMode& mode : {kMarchingOnly, kEarlyExit, kShading}) {
+        bench.progress.show(fmt::format("{}: ray casting, {}", bench.volume, mode.name));
+        std::vector<Entrant> entrants;
+        for (const Subject& subject : subjects) {
+            Result<Entrant> entrant =
+                entrantOf(bench.stage, subject.scene, rayCasting(bench.options, mode),
+                          rowOf(bench, "frames", "ray casting", mode, subject));
+            if (!entrant) {
+                return tl::unexpected(entrant.error());
+            }
+            entrants.push_back(std::move(*entrant));
+        }
+        if (Result<void> done = raceOf(bench, entrants); !done) {
+            return done;
+        }
+    }
+    return {};
+}
+
+Result<Entrant> seated(const SkipBench& bench, const Seat& seat, int layers, const BenchMode& mode,
+                       const char* table, const char* family) {
+    Settings settings = settingsOf(bench.options, mode);
+    settings.layersPerPlane = layers;
+    settings.tighten = seat.tighten;
+    return entrantOf(bench.stage, seat.subject->scene, settings,
+                     rowOf(bench, table, family, mode, *seat.subject));
+}
+
+Result<void> slice(SkipBench& bench, std::span<const Subject> subjects) {
+    bench.progress.show(bench.volume + ": slicing");
+    std::vector<Entrant> entrants;
+    // A quick run leaves out what never pays: a fetch per layer to save no more than a layer.
+    for (const Seat& seat : seatsOf(subjects, bench.options.quick)) {
+        Result<Entrant> entrant = seated(bench, seat, 1, kMarchingOnly, "frames", "slicing");
+        if (!entrant) {
+            return tl::unexpected(entrant.error());
+        }
+        entrants.push_back(std::move(*entrant));
+    }
+    return raceOf(bench, entrants);
+}
+
+/// Layers per plane that are fastest on the picture as it is, by the least of a few frames.
+Result<int> bestLayers(SkipBench& bench, const Seat& seat, const BenchMode& mode) {
+    const int total = totalLayers(settingsOf(bench.options, mode), seat.subject->scene.facts());
+    int best = 0;
+    double bestMs = std::numeric_limits<double>::infinity();
+    for (const int layers : kHybridLayers) {
+        if (layers >= total && best > 0) {
+            break; // that is ray casting
+        }
+        const Result<Entrant> entrant = seated(bench, seat, layers, mode, "ratios", "hybrid");
+        if (!entrant) {
+            return tl::unexpected(entrant.error());
+        }
+        double least = std::numeric_limits<double>::infinity();
+        for (int k = 0; k < kTimedFrames; ++k) {
+            const Result<double> ms = timedFrame(bench.stage, *entrant, 0.0);
+            if (!ms) {
+                return tl::unexpected(ms.error());
+            }
+            least = std::min(least, *ms);
+        }
+        json row = entrant->row;
+        row["ms"] = least;
+        bench.rows.push_back(std::move(row));
+        if (least < bestMs) {
+            best = layers;
+            bestMs = least;
+        }
+    }
+    return best;
+}
+
+Result<void> castSegments(SkipBench& bench, std::span<const Subject> subjects) {
+    for (const BenchMode& mode : {kMarchingOnly, kEarlyExit}) {
+        std::vector<Entrant> entrants;
+        for (const Seat& seat : seatsOf(subjects)) {
+            bench.progress.show(fmt::format("{}: hybrid, {}, {}", bench.volume, mode.name,
+                                            name(seat.subject->options.structure)));
+            bench.stage.resize(glm::max(bench.options.size / kShrink, glm::ivec2(1)));
+            const Result<int> layers = bestLayers(bench, seat, mode);
+            bench.stage.resize(bench.options.size);
+            Result<Entrant> entrant = layers.and_then(
+                [&](int best) { return seated(bench, seat, best, mode, "frames", "hybrid"); });
+            if (!entrant) {
+                return tl::unexpected(entrant.error());
+            }
+            entrants.push_back(std::move(*entrant));
+        }
+        if (Result<void> done = raceOf(bench, entrants); !done) {
+            return done;
+        }
+    }
+    return {};
+}
+
+/// Work of one frame with parameters that are equal for all: counted, not timed.
+Result<void> countWork(SkipBench& bench) {
+    std::vector<Refusal> refused;
+    const Result<std::vector<Subject>> subjects =
+        subjectsOf(bench.stage, usualStructures(bench.options), refused);
+    if (!subjects) {
+        return tl::unexpected(subjects.error());
+    }
+    for (const Subject& subject : *subjects) {
+        Result<Entrant> entrant =
+            entrantOf(bench.stage, subject.scene, rayCasting(bench.options, kMarchingOnly),
+                      rowOf(bench, "work", "ray casting", kMarchingOnly, subject));
+        if (!entrant) {
+            return tl::unexpected(entrant.error());
+        }
+        bench.stage.show(subject.scene);
+        if (Result<void> ready = bench.stage.prepare(entrant->plan); !ready) {
+            return ready;
+        }
+        entrant->row["counters"] = toJson(bench.stage.countWork(entrant->plan));
+        bench.rows.push_back(std::move(entrant->row));
+    }
+    return {};
+}
+
+} // namespace
+
+Settings settingsOf(const SkipbenchOptions& options, const BenchMode& mode) {
+    Settings settings = options.settings;
+    settings.shaded = mode.shaded;
+    settings.tighten = false;
+    if (!mode.terminates) {
+        settings.termination.reset();
+    }
+    return settings;
+}
+
+Settings rayCasting(const SkipbenchOptions& options, const BenchMode& mode) {
+    Settings settings = settingsOf(options, mode);
+    settings.planes = 1;
+    return settings;
+}
+
+Result<void> measureFrames(SkipBench& bench, std::span<const Subject> subjects) {
+    return castRays(bench, subjects)
+        .and_then([&] { return castSegments(bench, subjects); })
+        .and_then([&] { return slice(bench, subjects); })
+        .and_then([&] { return countWork(bench); });
+}
+
+} // namespace slabcast

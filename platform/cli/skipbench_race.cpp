@@ -1,0 +1,110 @@
+#include "platform/cli/skipbench_race.h"
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+namespace slabcast {
+
+namespace {
+
+using nlohmann::json;
+using Samples = std::vector<std::vector<double>>; // of each entrant, round by round
+
+/// Compiles and uploads for the first time; what a round takes from then on.
+Result<double> warmUp(Stage& stage, const std::vector<Entrant>& entrants) {
+    double roundMs = 0.0;
+    for (const Entrant& entrant : entrants) {
+        const Result<double> ms = timedFrame(stage, entrant, 0.0);
+        if (!ms) {
+            return ms;
+        }
+        roundMs += 2.0 * *ms;
+    }
+    return roundMs;
+}
+
+Result<Samples> samplesOf(Stage& stage, const std::vector<Entrant>& entrants, int rounds) {
+    Samples samples(entrants.size());
+    std::vector<std::size_t> order(entrants.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::mt19937 random(1); // the same shuffles in every run
+    for (int round = 0; round < rounds; ++round) {
+        std::shuffle(order.begin(), order.end(), random);
+        for (const std::size_t k : order) {
+            const Result<double> ms = timedFrame(stage, entrants[k], 360.0 * round / rounds);
+            if (!ms) {
+                return tl::unexpected(ms.error());
+            }
+            samples[k].push_back(*ms);
+        }
+    }
+    return samples;
+}
+
+} // namespace
+
+Result<Entrant> entrantOf(const Stage& stage, const Scene& scene, const Settings& settings,
+                          json row) {
+    Settings own = settings;
+    own.skip = scene.skip().options.structure;
+    return plan(scene.facts(), own, stage.session().caps, {}).map([&](FramePlan plan) {
+        row.update({{"planes", plan.planes},
+                    {"layersPerPlane", plan.layersPerPlane},
+                    {"tighten", plan.tighten},
+                    {"order", name(plan.order)},
+                    {"variant", name(plan.variant)}});
+        return Entrant{&scene, std::move(plan), std::move(row)};
+    });
+}
+
+Result<double> timedFrame(Stage& stage, const Entrant& entrant, double turnDegrees) {
+    stage.show(*entrant.scene);
+    if (Result<void> ready = stage.prepare(entrant.plan); !ready) {
+        return tl::unexpected(ready.error());
+    }
+    if (Result<double> first = stage.drawTimed(entrant.plan, turnDegrees); !first) {
+        return first;
+    }
+    return stage.drawTimed(entrant.plan, turnDegrees);
+}
+
+int roundsWithin(double budgetMs, double roundMs, int most) {
+    return std::clamp(static_cast<int>(budgetMs / std::max(roundMs, 1e-3)), kFewestFrames,
+                      std::max(most, kFewestFrames));
+}
+
+Result<json> race(Stage& stage, const std::vector<Entrant>& entrants, int rounds, double budgetMs) {
+    const Result<double> roundMs = warmUp(stage, entrants);
+    if (!roundMs) {
+        return tl::unexpected(roundMs.error());
+    }
+    const Result<Samples> samples =
+        samplesOf(stage, entrants, roundsWithin(budgetMs, *roundMs, rounds));
+    if (!samples) {
+        return tl::unexpected(samples.error());
+    }
+    json rows = json::array();
+    for (std::size_t k = 0; k < entrants.size(); ++k) {
+        stage.show(*entrants[k].scene);
+        if (Result<void> ready = stage.prepare(entrants[k].plan); !ready) {
+            return tl::unexpected(ready.error());
+        }
+        json row = entrants[k].row;
+        row.update({{"frameMs", toJson(summarise((*samples)[k]))},
+                    {"samples", (*samples)[k]},
+                    {"speedup", pairedRatio(samples->front(), (*samples)[k])},
+                    {"counters", toJson(stage.countWork(entrants[k].plan))}});
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+double pairedRatio(const std::vector<double>& a, const std::vector<double>& b) {
+    std::vector<double> ratios;
+    std::transform(a.begin(), a.end(), b.begin(), std::back_inserter(ratios),
+                   [](double x, double y) { return x / y; });
+    return summarise(std::move(ratios)).median;
+}
+
+} // namespace slabcast

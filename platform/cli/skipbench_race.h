@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "platform/cli/draw.h"
+
+namespace slabcast {
+
+/// One way to draw what others draw too.
+struct Entrant {
+    const Scene* scene = nullptr; // a variation of the stage's, with its structure
+    FramePlan plan;
+    nlohmann::json row; // what it is
+};
+
+/// Contract: a structure of its settings is the scene's, or none.
+Result<Entrant> entrantOf(const Stage& stage, const Scene& scene, const Settings& settings,
+                          nlohmann::json row);
+
+/// The time of one frame after one that is not counted, ms.
+Result<double> timedFrame(Stage& stage, const Entrant& entrant, double turnDegrees);
+
+/// The most frames that a race of this many entrants may draw each within the time.
+int roundsWithin(double budgetMs, double roundMs, int most);
+
+/// All entrants on equal terms: in every round each draws one frame of the same view, after one
+/// that is not counted, in an order that is shuffled anew, so that the drift of a busy machine hits
+/// all alike; the views of the rounds go once around. At most `rounds`, fewer where they would take
+/// over `budgetMs`, 3 at least. Gives the rows with `frameMs`, the `samples` of the rounds,
+/// `speedup` (how many times as fast as the first entrant: the median over the rounds, each with
+/// itself) and `counters`, of the first view.
+Result<nlohmann::json> race(Stage& stage, const std::vector<Entrant>& entrants, int rounds,
+                            double budgetMs);
+
+/// Median of a[k] / b[k]: drift, and views that take longer, are the same in both.
+double pairedRatio(const std::vector<double>& a, const std::vector<double>& b);
+
+} // namespace slabcast

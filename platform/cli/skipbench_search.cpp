@@ -1,0 +1,127 @@
+#include "platform/cli/skipbench_search.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include "platform/cli/skipbench_frames.h"
+#include "platform/cli/skipbench_race.h"
+
+namespace slabcast {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr int kShrink = 2; // of the picture's edge
+constexpr int kTimedFrames = 3;
+constexpr std::size_t kFinalists = 3; // of a structure
+constexpr double kFinalsMs = 20e3;
+
+/// The least of a few: what disturbs a frame only ever makes it longer.
+Result<double> leastMs(Stage& stage, const Entrant& entrant) {
+    Result<double> least = timedFrame(stage, entrant, 0.0);
+    for (int k = 1; least && k < kTimedFrames; ++k) {
+        least =
+            stage.drawTimed(entrant.plan, 0.0).map([&](double ms) { return std::min(ms, *least); });
+    }
+    return least;
+}
+
+struct Tried {
+    SkipOptions options;
+    double ms = 0.0;
+};
+
+/// The fastest few of one structure, on the picture as it is.
+Result<std::vector<Tried>> triedOf(SkipBench& bench, SkipStructure structure) {
+    const std::vector<SkipOptions> grid =
+        searchGrid(structure, bench.stage.info().dims, bench.options.quick);
+    std::vector<Tried> tried;
+    for (const SkipOptions& options : grid) {
+        bench.progress.show(fmt::format("{}: searching {} {} of {}", bench.volume, name(structure),
+                                        tried.size() + 1, grid.size()));
+        const Result<Scene> scene = bench.stage.variation(bench.stage.scene().look().tf, options);
+        if (!scene) {
+            return tl::unexpected(scene.error());
+        }
+        const Result<double> ms =
+            entrantOf(bench.stage, *scene, rayCasting(bench.options, kMarchingOnly), json::object())
+                .and_then([&](const Entrant& entrant) { return leastMs(bench.stage, entrant); });
+        if (!ms) {
+            return tl::unexpected(ms.error());
+        }
+        tried.push_back({options, *ms});
+        json row = bench.row("search");
+        row.update(toJson(options));
+        row["ms"] = *ms;
+        bench.rows.push_back(std::move(row));
+    }
+    std::stable_sort(tried.begin(), tried.end(),
+                     [](const Tried& a, const Tried& b) { return a.ms < b.ms; });
+    tried.resize(std::min(tried.size(), kFinalists));
+    return tried;
+}
+
+/// The fastest of the finalists, racing at full size.
+Result<SkipOptions> winnerOf(SkipBench& bench, const std::vector<Tried>& finalists) {
+    if (finalists.size() == 1) {
+        return finalists.front().options;
+    }
+    std::vector<SkipOptions> structures;
+    for (const Tried& tried : finalists) {
+        structures.push_back(tried.options);
+    }
+    std::vector<Refusal> refused; // none: they were built before
+    const Result<std::vector<Subject>> subjects = subjectsOf(bench.stage, structures, refused);
+    if (!subjects) {
+        return tl::unexpected(subjects.error());
+    }
+    std::vector<Entrant> entrants;
+    for (const Subject& subject : *subjects) {
+        json row = bench.row("finals");
+        row.update(toJson(subject.options));
+        Result<Entrant> entrant =
+            entrantOf(bench.stage, subject.scene, rayCasting(bench.options, kMarchingOnly), row);
+        if (!entrant) {
+            return tl::unexpected(entrant.error());
+        }
+        entrants.push_back(std::move(*entrant));
+    }
+    const Result<json> rows = race(bench.stage, entrants, bench.options.frames, kFinalsMs);
+    if (!rows) {
+        return tl::unexpected(rows.error());
+    }
+    const auto median = [](const json& row) { return row["frameMs"]["median"].get<double>(); };
+    const auto best =
+        std::min_element(rows->begin(), rows->end(),
+                         [&](const json& a, const json& b) { return median(a) < median(b); });
+    bench.rows.insert(bench.rows.end(), rows->begin(), rows->end());
+    return structures[static_cast<std::size_t>(best - rows->begin())];
+}
+
+} // namespace
+
+Result<std::vector<SkipOptions>> searchParameters(SkipBench& bench) {
+    std::vector<SkipOptions> best;
+    for (const SkipOptions& usual : usualStructures(bench.options)) {
+        if (usual.structure == SkipStructure::None ||
+            usual.structure == SkipStructure::Partitioned) {
+            best.push_back(usual);
+            continue;
+        }
+        const glm::ivec2 size = bench.options.size;
+        bench.stage.resize(glm::max(size / kShrink, glm::ivec2(1)));
+        const Result<std::vector<Tried>> tried = triedOf(bench, usual.structure);
+        bench.stage.resize(size);
+        const Result<SkipOptions> winner =
+            tried.and_then([&](const std::vector<Tried>& few) { return winnerOf(bench, few); });
+        if (!winner) {
+            return tl::unexpected(winner.error());
+        }
+        best.push_back(*winner);
+    }
+    return best;
+}
+
+} // namespace slabcast

@@ -1,0 +1,103 @@
+#include "platform/cli/skipbench_sizes.h"
+
+#include <fmt/core.h>
+
+#include "platform/cli/skipbench_builds.h"
+#include "platform/cli/skipbench_frames.h"
+#include "platform/cli/skipbench_race.h"
+
+namespace slabcast {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr int kBuilds = 3;
+constexpr double kRaceMs = 20e3;
+
+/// Frames of all that can be had, by structure.
+Result<json> framesOf(SkipBench& bench, const json& beginning) {
+    std::vector<Refusal> refused; // named with the builds
+    const Result<std::vector<Subject>> subjects =
+        subjectsOf(bench.stage, usualStructures(bench.options), refused);
+    if (!subjects) {
+        return tl::unexpected(subjects.error());
+    }
+    std::vector<Entrant> entrants;
+    for (const Subject& subject : *subjects) {
+        json row = beginning;
+        row.update(toJson(subject.options));
+        Result<Entrant> entrant =
+            entrantOf(bench.stage, subject.scene, rayCasting(bench.options, kMarchingOnly), row);
+        if (!entrant) {
+            return tl::unexpected(entrant.error());
+        }
+        entrants.push_back(std::move(*entrant));
+    }
+    return race(bench.stage, entrants, kFewestFrames, kRaceMs);
+}
+
+/// Rows of frames, each with what the row of the same structure's builds says too; refused ones
+/// have no frames.
+json joined(json frames, const json& builds) {
+    for (const json& build : builds) {
+        bool found = false;
+        for (json& frame : frames) {
+            if (frame["structure"] == build["structure"]) {
+                frame.update(build);
+                found = true;
+            }
+        }
+        if (!found) {
+            frames.push_back(build);
+        }
+    }
+    return frames;
+}
+
+Result<json> measureSize(SkipBench& bench, int edge) {
+    json beginning = bench.row("sizes");
+    beginning.update({{"edge", edge},
+                      {"volumeBytes", bench.stage.info().bytes},
+                      {"mode", kMarchingOnly.name},
+                      {"family", "ray casting"}});
+    json builds;
+    {
+        const Workshop workshop(bench.stage);
+        beginning["codesMs"] = workshop.codesMs();
+        Result<json> built = buildRows(workshop, bench.stage.scene(),
+                                       usualStructures(bench.options), kBuilds, beginning);
+        if (!built) {
+            return tl::unexpected(built.error());
+        }
+        builds = std::move(*built);
+    }
+    return framesOf(bench, beginning).map([&](json frames) {
+        return joined(std::move(frames), builds);
+    });
+}
+
+} // namespace
+
+Result<json> measureSizes(const SkipbenchOptions& options, const SceneOptions& volume,
+                          const std::string& label, Progress& progress) {
+    json rows = json::array();
+    for (const int edge : options.sizes) {
+        progress.show(fmt::format("{}: resampled to {}^3", label, edge));
+        SceneOptions resampled = volume;
+        resampled.input.cubeEdge = edge;
+        Result<Stage> stage = Stage::open(resampled);
+        if (!stage) {
+            return tl::unexpected(stage.error());
+        }
+        SkipBench bench{*stage, options, label, progress};
+        const Result<json> measured = measureSize(bench, edge);
+        if (!measured) {
+            return measured;
+        }
+        rows.insert(rows.end(), measured->begin(), measured->end());
+    }
+    return rows;
+}
+
+} // namespace slabcast

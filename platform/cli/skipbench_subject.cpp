@@ -1,0 +1,133 @@
+#include "platform/cli/skipbench_subject.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include "core/skip/octree.h"
+
+namespace slabcast {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr int kUsualPartitions = 64; // as in Rauter et al. 2024, figure 4
+
+/// Values that a search tries, one list each; an empty one leaves the usual value.
+struct Axes {
+    std::vector<int> edges, bits, levels;
+    std::vector<Traversal> traversals;
+};
+
+Axes axesOf(SkipStructure structure, bool quick) {
+    if (!isOctree(structure)) {
+        return {quick ? std::vector{4, 8} : std::vector{2, 4, 8}, {}, {}, {}};
+    }
+    Axes axes{quick ? std::vector{4, 8} : std::vector{2, 4, 8, 16},
+              {},
+              quick ? std::vector{0, 3} : std::vector{0, 1, 2, 3, 4, 5},
+              {Traversal::Bidirectional, Traversal::TopDown}};
+    if (structure == SkipStructure::BitfieldOctree) {
+        axes.bits = quick ? std::vector{16, 32, 64} : std::vector{8, 16, 32, 64, 128};
+    }
+    return axes;
+}
+
+/// Each of the options with each of the values.
+template <class T>
+void spread(std::vector<SkipOptions>& all, T SkipOptions::*member, const std::vector<T>& values) {
+    if (values.empty()) {
+        return;
+    }
+    std::vector<SkipOptions> more;
+    for (const SkipOptions& options : all) {
+        for (const T value : values) {
+            more.push_back(options);
+            more.back().*member = value;
+        }
+    }
+    all = std::move(more);
+}
+
+} // namespace
+
+json toJson(const SkipOptions& o) {
+    json row{{"structure", name(o.structure)}};
+    if (o.structure != SkipStructure::None) {
+        row["blockEdge"] = o.blockEdgeVoxels;
+    }
+    if (o.structure == SkipStructure::BitfieldOctree) {
+        row["bits"] = o.bits;
+    }
+    if (o.structure == SkipStructure::Partitioned) {
+        row["partitions"] = o.partitions;
+    }
+    if (isOctree(o.structure)) {
+        row["initialLevel"] = o.initialLevel;
+        row["traversal"] = name(o.traversal);
+    }
+    return row;
+}
+
+std::string describe(const SkipOptions& o) {
+    if (o.structure == SkipStructure::None) {
+        return "";
+    }
+    std::string text = fmt::format("{} voxels", o.blockEdgeVoxels);
+    if (o.structure == SkipStructure::BitfieldOctree) {
+        text += fmt::format(", {} bits", o.bits);
+    }
+    if (o.structure == SkipStructure::Partitioned) {
+        text += fmt::format(", {} partitions", o.partitions);
+    }
+    if (isOctree(o.structure)) {
+        text += fmt::format(", level {}, {}", o.initialLevel, name(o.traversal));
+    }
+    return text;
+}
+
+std::vector<SkipOptions> searchGrid(SkipStructure structure, glm::ivec3 dims, bool quick) {
+    const Axes axes = axesOf(structure, quick);
+    std::vector<SkipOptions> all{{.structure = structure}};
+    spread(all, &SkipOptions::blockEdgeVoxels, axes.edges);
+    spread(all, &SkipOptions::bits, axes.bits);
+    spread(all, &SkipOptions::initialLevel, axes.levels);
+    spread(all, &SkipOptions::traversal, axes.traversals);
+    const auto beyondTheLeaves = [dims](const SkipOptions& o) {
+        const glm::ivec3 leaves = (dims + o.blockEdgeVoxels - 1) / o.blockEdgeVoxels;
+        return isOctree(o.structure) && o.initialLevel >= levelsToRoot(leaves);
+    };
+    std::erase_if(all, beyondTheLeaves);
+    return all.empty() ? std::vector<SkipOptions>{{.structure = structure}} : all;
+}
+
+std::vector<SkipOptions> usualStructures(const SkipbenchOptions& options) {
+    std::vector<SkipOptions> all;
+    for (const SkipStructureInfo& info : skipStructures()) {
+        all.push_back({.structure = info.structure,
+                       .partitions = kUsualPartitions,
+                       .separateMinimum = info.structure == SkipStructure::Partitioned,
+                       .memoryBudgetBytes = options.skip.memoryBudgetBytes});
+    }
+    return all;
+}
+
+Result<std::vector<Subject>> subjectsOf(const Stage& stage,
+                                        const std::vector<SkipOptions>& structures,
+                                        std::vector<Refusal>& refused) {
+    std::vector<Subject> subjects;
+    for (const SkipOptions& options : structures) {
+        Result<Scene> scene = stage.variation(stage.scene().look().tf, options);
+        if (scene) {
+            subjects.push_back({options, std::move(*scene)});
+        } else if (scene.error().code == ErrorCode::VolumeTooLarge) {
+            refused.push_back({options, scene.error()});
+        } else {
+            return tl::unexpected(scene.error());
+        }
+    }
+    return subjects;
+}
+
+} // namespace slabcast

@@ -1,0 +1,250 @@
+#!/usr/bin/env python3
+"""`slabcast skipbench`, as small as can be, as a process: exit status, tables, figures, and what it refuses.
+
+usage: skipbench_test.py SLABCAST [arguments of unittest]
+"""
+
+import csv
+import json
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SLABCAST = None  # the program, from the command line
+STRUCTURES = ["none", "blocks", "proximity", "chebyshev", "partitioned", "boolean-octree", "minmax-octree",
+              "bitfield-octree"]
+OCTREES = STRUCTURES[5:]
+MODES = ["marching only", "early exit", "shading"]
+PARTITIONS = [16, 32, 64, 128, 256]
+TRANSFERS = ["TF1", "TF2", "TF3", "TF4", "TF5", "TF6"]
+KEYS = {"command", "commit", "date", "device", "conditions", "volumes", "figures", "papers", "rows", "summary"}
+BUDGET_MIB = 0.03  # 27,648 bytes fit (6^3 blocks x 128, 12^3 x 16), 55,296 do not
+
+
+def skipbench(*arguments):
+    return subprocess.run([SLABCAST, "skipbench", *map(str, arguments)], capture_output=True, text=True, timeout=300)
+
+
+def paired(a, b):
+    return statistics.median(x / y for x, y in zip(a["samples"], b["samples"], strict=True))
+
+
+class SmallRunTest(unittest.TestCase):
+    """One run over 24^3 voxels and 32x32 pixels, made once."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = Path(tempfile.mkdtemp(prefix="slabcast_skipbench_")) / "out"
+        cls.addClassCleanup(shutil.rmtree, cls.folder.parent)
+        cls.run_ = skipbench("phantom:gap:24", "--quick", "--size", "32x32", "--sizes", "16,24", "--frames", 3,
+                             "--partition-budget", BUDGET_MIB, "--out", cls.folder)
+        assert cls.run_.returncode == 0, cls.run_.stderr
+        cls.report = json.loads((cls.folder / "skipbench.json").read_text())
+        cls.rows = cls.report["rows"]
+
+    def of(self, table, **keys):
+        return [row for row in self.rows if row["table"] == table and all(row.get(k) == v for k, v in keys.items())]
+
+    def one(self, table, **keys):
+        found = self.of(table, **keys)
+        self.assertEqual(len(found), 1, (table, keys))
+        return found[0]
+
+    def figure(self, *words):
+        found = [f for f in self.report["figures"] if all(word in f["name"] for word in words)]
+        self.assertEqual(len(found), 1, words)
+        return found[0]
+
+    def test_files_and_keys(self):
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()),
+                         ["report.html", "skipbench.csv", "skipbench.json"])
+        self.assertEqual(set(self.report), KEYS)
+        self.assertIn("</html>", (self.folder / "report.html").read_text())
+
+    def test_summary_is_the_last_line(self):
+        self.assertEqual(self.run_.stdout.splitlines()[-1], self.report["summary"])
+        judged = [f for f in self.report["figures"] if f["reached"] is not None]
+        self.assertIn(f"summary: {sum(f['reached'] for f in judged)} of {len(judged)} figures reached",
+                      self.report["summary"])
+
+    def test_the_phantom_is_shown_by_its_own_preset(self):
+        self.assertEqual([v["transferFunction"] for v in self.report["volumes"]], ["Gap"])
+
+    def test_every_structure_in_every_mode(self):
+        for mode in MODES:
+            rows = self.of("frames", family="ray casting", mode=mode)
+            self.assertEqual([row["structure"] for row in rows], STRUCTURES, mode)
+            self.assertEqual({row["planes"] for row in rows}, {1})
+        for family, mode in (("hybrid", "marching only"), ("hybrid", "early exit"), ("slicing", "marching only")):
+            rows = self.of("frames", family=family, mode=mode)
+            self.assertEqual({row["structure"] for row in rows}, set(STRUCTURES), family)
+            self.assertEqual(rows[0]["structure"], "none")
+        self.assertEqual({row["layersPerPlane"] for row in self.of("frames", family="slicing")}, {1})
+        for name in ("layers_evaluated", "volume_fetches", "skip_fetches", "stretches", "blocks_visited"):
+            self.assertTrue(all(name in row["counters"] for row in self.of("frames")), name)
+
+    def test_speedups_are_those_of_the_samples(self):
+        for family in ("ray casting", "hybrid", "slicing"):
+            for mode in MODES:
+                rows = self.of("frames", family=family, mode=mode)
+                for row in rows:
+                    self.assertEqual(len(row["samples"]), row["frameMs"]["n"])
+                    self.assertAlmostEqual(row["frameMs"]["median"], statistics.median(row["samples"]))
+                    self.assertAlmostEqual(row["speedup"], paired(rows[0], row), places=9)
+
+    def test_equal_parameters_skip_equally_much_where_nothing_lies_between(self):
+        layers = {row["structure"]: row["counters"]["layers_evaluated"] for row in self.of("work")}
+        self.assertEqual(list(layers), STRUCTURES)
+        # Exact ones of blocks of 4 voxels agree; the TF as one range, or bin by bin, never shows less.
+        for name in ("proximity", "chebyshev", "boolean-octree"):
+            self.assertEqual(layers[name], layers["blocks"], name)
+        self.assertLessEqual(layers["blocks"], layers["bitfield-octree"])
+        self.assertLessEqual(layers["bitfield-octree"], layers["minmax-octree"])
+        self.assertLessEqual(layers["minmax-octree"], layers["none"])
+
+    def test_the_best_was_searched_for(self):
+        for structure in OCTREES:
+            tried = [tuple(row.get(k) for k in ("blockEdge", "bits", "initialLevel", "traversal"))
+                     for row in self.of("search", structure=structure)]
+            self.assertEqual(len(tried), len(set(tried)))
+            self.assertGreaterEqual(len(tried), 4)
+            best = self.one("structures", structure=structure)
+            finals = self.of("finals", structure=structure)
+            fastest = min(finals, key=lambda row: row["frameMs"]["median"])
+            for key in ("blockEdge", "initialLevel", "traversal"):
+                self.assertEqual(best[key], fastest[key], structure)
+
+    def test_what_structures_take(self):
+        for structure in STRUCTURES[1:]:
+            row = self.one("structures", structure=structure)
+            self.assertGreater(row["buildMs"]["median"], 0)
+            self.assertGreater(row["gpuBytes"], 0)
+            self.assertIn("gpuBuildMs", row)
+        self.assertGreater(self.one("structures", structure="partitioned")["hostBytes"], 0)
+
+    def test_partitions_over_the_budget_are_refused_with_what_they_need(self):
+        for row in self.of("partitions"):
+            blocks = (24 // row["blockEdge"]) ** 3
+            needed = blocks * row["partitions"]
+            self.assertEqual("refused" in row, needed > BUDGET_MIB * 2 ** 20, row)
+            merges = self.of("merge", blockEdge=row["blockEdge"], partitions=row["partitions"])
+            if "refused" in row:
+                self.assertRegex(row["refused"], r"\d.*(MiB|KiB|bytes)")
+                self.assertEqual(merges, [])
+            else:
+                self.assertEqual(row["hostBytes"], needed)
+                self.assertEqual([m["tf"] for m in merges], TRANSFERS)
+        self.assertEqual([row["partitions"] for row in self.of("partitions", blockEdge=4)], PARTITIONS)
+        self.assertEqual({row["blockEdge"] for row in self.of("partitions") if "refused" in row}, {1, 4})
+
+    def test_every_way_to_rebuild(self):
+        for edge in (1, 2, 4):
+            for structure in ("chebyshev", "proximity"):
+                rows = self.of("rebuild", blockEdge=edge, structure=structure)
+                self.assertEqual([row["tf"] for row in rows], TRANSFERS)
+                self.assertTrue(all(row["buildMs"]["median"] > 0 and row["ofRangesMs"]["median"] > 0 for row in rows))
+
+    def test_cost_against_size(self):
+        for edge in (16, 24):
+            rows = self.of("sizes", edge=edge)
+            self.assertEqual([row["structure"] for row in rows], STRUCTURES)
+            self.assertEqual({row["volumeBytes"] for row in rows}, {2 * edge ** 3})
+        self.assertGreater(self.one("sizes", edge=24, structure="bitfield-octree")["gpuBytes"],
+                           self.one("sizes", edge=16, structure="bitfield-octree")["gpuBytes"])
+
+    def test_figures_follow_from_rows(self):
+        for mode in ("marching only", "early exit"):
+            maps = [self.one("frames", family="ray casting", mode=mode, structure=s) for s in ("proximity", "chebyshev")]
+            best = min(maps, key=lambda row: row["frameMs"]["median"])
+            self.assertAlmostEqual(self.figure("distance map against none", mode)["value"], best["speedup"])
+        marching = {s: self.one("frames", family="ray casting", mode="marching only", structure=s) for s in STRUCTURES}
+        fast = min((marching[s] for s in ("proximity", "chebyshev")), key=lambda row: row["frameMs"]["median"])
+        self.assertAlmostEqual(self.figure("bitfield octree against the distance map")["value"],
+                               paired(marching["bitfield-octree"], fast))
+        visited = {s: self.one("work", structure=s)["counters"]["blocks_visited"] for s in OCTREES}
+        self.assertAlmostEqual(self.figure("blocks visited")["value"],
+                               visited["bitfield-octree"] / visited["minmax-octree"])
+        self.assertEqual(self.figure("blocks visited")["goal"], 0.6)
+        hybrid = [row["speedup"] for row in self.of("frames", family="hybrid", mode="early exit", tighten=True)]
+        self.assertAlmostEqual(self.figure("hybrid", "early exit", "rectangles")["value"], max(hybrid))
+        merges = [row["speedup"] for row in self.of("merge", blockEdge=4, partitions=16)]
+        self.assertAlmostEqual(self.figure("merging 16", "blocks of 4")["value"], statistics.median(merges))
+        self.assertIsNone(self.figure("merging 16", "blocks of 1")["value"])  # refused
+
+    def test_a_figure_is_reached_where_its_value_meets_its_goal(self):
+        for figure in self.report["figures"]:
+            if figure["value"] is None or figure["goal"] is None:
+                self.assertIsNone(figure["reached"], figure)
+            else:
+                meets = figure["value"] >= figure["goal"] if figure["sense"] == ">=" else (
+                    figure["value"] <= figure["goal"])
+                self.assertEqual(figure["reached"], meets, figure)
+        bone = [f["goal"] for f in self.report["figures"] if "distance map against none" in f["name"]]
+        self.assertEqual(bone, [None, None])  # goals of the skull are not the phantom's
+
+    def test_published_columns_are_in_order(self):
+        faludi = self.report["papers"]["faludi"]
+        self.assertEqual(len(faludi["datasets"]), 6)
+        # What the paper says of its table: the map is the fastest, and generated the slowest, for every dataset.
+        for data in faludi["datasets"]:
+            for mode in MODES:
+                self.assertEqual(min(data[mode]), data[mode][1], data["name"])
+            self.assertEqual(max(data["generation"]), data["generation"][0], data["name"])
+        lungs = faludi["datasets"][0]
+        self.assertAlmostEqual(lungs["early exit"][3] / lungs["early exit"][4] - 1, 1.14, delta=0.005)  # "up to 114%"
+        # "up to factor 10 for 256 partitions and up to factor 30 for 16", a little more in the table itself
+        update = [line for data in self.report["papers"]["rauter"]["datasets"] for line in data["update"]]
+        self.assertEqual({len(line) for line in update}, {6})
+        self.assertLess(max(line[0] / line[5] for line in update), 10)
+        self.assertLess(30, max(line[0] / line[1] for line in update))
+
+    def test_table_has_a_line_per_row(self):
+        with open(self.folder / "skipbench.csv", newline="", encoding="utf-8") as table:
+            lines = list(csv.DictReader(table))
+        self.assertEqual(len(lines), len(self.rows))
+        self.assertEqual([line["table"] for line in lines], [row["table"] for row in self.rows])
+        self.assertLessEqual({"volume", "family", "mode", "structure", "block_edge", "bits", "initial_level", "traversal",
+                              "partitions", "tf", "speedup", "build_ms", "gpu_build_ms", "gpu_bytes", "refused",
+                              "frame_ms_median", "layers_evaluated", "blocks_visited"}, set(lines[0]))
+        for line, row in zip(lines, self.rows):
+            if row["table"] == "frames":
+                self.assertEqual(float(line["frame_ms_median"]), row["frameMs"]["median"])
+
+
+class RefusalTest(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.out = Path(temporary.name) / "out"
+
+    def refuses(self, cause, *arguments, status=1):
+        run = skipbench(*arguments)
+        self.assertEqual(run.returncode, status, run.stderr)
+        self.assertRegex(run.stderr, rf"\Aslabcast[^\n]*{cause}[^\n]*\n\Z")
+        self.assertFalse(self.out.exists())
+
+    def test_bad_usage(self):
+        self.refuses("VOLUME", "--out", self.out, status=2)
+        self.refuses("--out", "phantom:gap:8", status=2)
+        self.refuses("--sizes", "phantom:gap:8", "--sizes", "0", "--out", self.out, status=2)
+        self.refuses("--partition-budget", "phantom:gap:8", "--partition-budget", "much", "--out", self.out, status=2)
+
+    def test_any_volume_that_cannot_be_read_stops_before_the_first_is_measured(self):
+        self.refuses("no phantom 'cube'", "phantom:cube", "--out", self.out)
+        self.refuses("nowhere.nrrd", "phantom:gap:8", "nowhere.nrrd", "--out", self.out)
+
+    def test_transfer_function_that_is_none(self):
+        self.refuses("no preset 'bones'", "phantom:gap:8", "--tf", "bones", "--out", self.out)
+
+    def test_folder_that_cannot_be_made(self):
+        with tempfile.NamedTemporaryFile() as file:
+            self.refuses("cannot make this folder", "phantom:gap:8", "--out", Path(file.name) / "out")
+
+
+if __name__ == "__main__":
+    SLABCAST = sys.argv.pop(1)
+    unittest.main()

@@ -1,0 +1,295 @@
+#include "core/skip/value_bins.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <span>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "core/volume/half.h"
+#include "tests/support/skip_scene.h"
+
+namespace slabcast {
+namespace {
+
+bool has(const BinSet& set, int bin) {
+    return (set[bin / 32] >> (bin % 32) & 1U) != 0;
+}
+
+/// A few codes whose sampled values rise unevenly, some of them binned floats that overlap. The
+/// wide steps have room for values that no code stands for.
+TexelCodes randomCodes() {
+    const auto steps = *rc::gen::nonEmpty(
+        rc::gen::container<std::vector<int>>(rc::gen::element(0, 1, 1, 1, 2, 5, 40, 40)));
+    const float width = float(*rc::gen::element(0, 0, 1, 3));
+    TexelCodes codes;
+    codes.dims = glm::ivec3(int(steps.size()), 1, 1);
+    float value = float(*rc::gen::inRange(-50, 50));
+    for (std::size_t code = 0; code < steps.size(); ++code) {
+        value += float(steps[code]);
+        codes.codes.push_back(std::uint16_t(code));
+        codes.lowSampled.push_back(value);
+        codes.highSampled.push_back(value + width);
+    }
+    return codes;
+}
+
+/// Up to four visible runs of texels, from half a value to four apart, over all of the values, a
+/// part of them, or more.
+TransferTable randomTable(const TexelCodes& codes) {
+    const double low = codes.lowSampled.front() + *rc::gen::inRange(-20, 20);
+    const double span = 1.0 + std::abs(codes.lowSampled.back() - low);
+    const int size = 2 + int(span * *rc::gen::element(0.25, 1.0, 2.0));
+    TransferTable table{low, low + span, std::vector<glm::vec4>(size, glm::vec4(0.0F))};
+    const auto runs = *rc::gen::resize(
+        4, rc::gen::container<std::vector<std::pair<int, int>>>(rc::gen::pair(
+               rc::gen::resize(100, rc::gen::inRange(0, size)), rc::gen::element(0, 0, 1, 5, 50))));
+    for (const auto& [first, length] : runs) {
+        for (int k = first; k <= std::min(size - 1, first + length); ++k) {
+            table.texels[k].a = 0.5F;
+        }
+    }
+    return table;
+}
+
+CodeRange randomRange(const TexelCodes& codes) {
+    const auto code = rc::gen::inRange<std::uint16_t>(0, std::uint16_t(codes.lowSampled.size()));
+    const std::uint16_t a = *code;
+    const std::uint16_t b = *code;
+    return {std::min(a, b), std::max(a, b)};
+}
+
+ValueBins randomBins(const TexelCodes& codes) {
+    std::optional<std::array<double, 2>> trimmed;
+    if (*rc::gen::arbitrary<bool>()) {
+        const double low = codes.lowSampled.front() + *rc::gen::inRange(-10, 100);
+        trimmed = {low, low + *rc::gen::inRange(1, 100)};
+    }
+    return valueBins(codes, randomRange(codes), *rc::gen::element(2, 3, 8, 16, 32, 128, 256),
+                     *rc::gen::arbitrary<bool>(), trimmed);
+}
+
+/// How many bins of the set the cells of each pair of codes have, all pairs: cells that are visible
+/// have one at least, and every bin of the set is the only one that some visible cell has there.
+void checkSet(const ValueBins& bins, const CellVisibility& visibility, const BinSet& set) {
+    const std::size_t codes = bins.binOfCode.size();
+    BinSet needed{};
+    for (std::size_t least = 0; least < codes; ++least) {
+        for (std::size_t greatest = least; greatest < codes; ++greatest) {
+            if (!visibility.visible(std::uint16_t(least), std::uint16_t(greatest))) {
+                continue;
+            }
+            std::vector<int> common;
+            for (int bin = bins.binOfCode[least]; bin <= bins.binOfCode[greatest]; ++bin) {
+                if (has(set, bin)) {
+                    common.push_back(bin);
+                }
+            }
+            RC_ASSERT(!common.empty());
+            if (common.size() == 1) {
+                needed[common[0] / 32] |= 1U << (common[0] % 32);
+            }
+        }
+    }
+    RC_ASSERT(needed == set);
+}
+
+RC_GTEST_PROP(VisibleBins, AreThoseThatVisibleCellsNeed, ()) {
+    const TexelCodes codes = randomCodes();
+    const ValueBins bins = randomBins(codes);
+    const double filterError = *rc::gen::element(0.0, 0.0, 0.3, 2.0);
+    const CellVisibility visibility =
+        cellVisibility(codes, Texels{}, randomTable(codes), filterError);
+    checkSet(bins, visibility, visibleBins(bins, visibility));
+}
+
+RC_GTEST_PROP(VisibleBins, OfAlpha, ()) {
+    TexelCodes codes;
+    codes.lowSampled.resize(256);
+    std::iota(codes.lowSampled.begin(), codes.lowSampled.end(), 0.0F);
+    const ValueBins bins = randomBins(codes);
+    const CellVisibility visibility = cellVisibilityOfAlpha(codes);
+    checkSet(bins, visibility, visibleBins(bins, visibility));
+}
+
+/// A visible value that no code stands for, between two bins: one of the two is enough, the lower.
+TEST(VisibleBins, BetweenTwoBinsTheLowerCounts) {
+    test::SkipScene scene = test::constantScene({1, 1, 1}, 0, test::bandTable(1001, 500, 500));
+    scene.codes.lowSampled = {0.0F, 10.0F, 990.0F, 1000.0F};
+    scene.codes.highSampled = scene.codes.lowSampled;
+    const CellVisibility visibility = scene.visibility();
+    const ValueBins bins{4, {0, 1, 2, 3}};
+    EXPECT_EQ(visibleBins(bins, visibility), (BinSet{1U << 1}));
+    EXPECT_EQ(visibleBins({256, {0, 40, 200, 255}}, visibility), (BinSet{0, 1U << 8}));
+    EXPECT_EQ(visibleBins({2, {0, 0, 0, 1}}, visibility), (BinSet{1U}));
+}
+
+TEST(VisibleBins, NothingVisibleNeedsNone) {
+    const test::SkipScene scene = test::constantScene({1, 1, 1}, 0, test::bandTable(256, 0, -1));
+    const ValueBins bins = valueBins(scene.codes, {0, 255}, 256, false);
+    EXPECT_EQ(visibleBins(bins, scene.visibility()), BinSet{});
+}
+
+/// All codes have a bin, bins rise with codes, and where the value says so exactly.
+RC_GTEST_PROP(ValueBins, AreEvenInValue, ()) {
+    const TexelCodes codes = randomCodes();
+    const CodeRange range = randomRange(codes);
+    const int count = *rc::gen::element(2, 3, 8, 16, 32, 128, 256);
+    const bool separate = *rc::gen::arbitrary<bool>();
+    const bool trim = *rc::gen::arbitrary<bool>();
+    const std::size_t first = std::min<std::size_t>(range.least + (separate ? 1 : 0), range.most);
+    std::array<double, 2> span{codes.lowSampled[first], codes.lowSampled[range.most]};
+    if (trim) {
+        span[0] += *rc::gen::inRange(-10, 10);
+        span[1] = span[0] + *rc::gen::inRange(1, 100);
+    }
+    const ValueBins bins =
+        valueBins(codes, range, count, separate, trim ? std::optional(span) : std::nullopt);
+    RC_ASSERT(bins.count == count);
+    RC_ASSERT(bins.binOfCode.size() == codes.lowSampled.size());
+    RC_ASSERT(std::is_sorted(bins.binOfCode.begin(), bins.binOfCode.end()));
+    const int even = count - (separate ? 1 : 0);
+    for (int code = 0; code < int(codes.lowSampled.size()); ++code) {
+        const int bin = bins.binOfCode[code];
+        if (separate && code <= range.least) {
+            RC_ASSERT(bin == 0);
+            continue;
+        }
+        // Values and spans are whole numbers: bin k spans [k, k+1] * (span / even) from the low
+        // end, and on a border, which is a quotient that rounds, either side will do.
+        const long value = std::lround((codes.lowSampled[code] - span[0])) * even;
+        const long width = std::lround(span[1] - span[0]);
+        const long k = bin - (count - even);
+        RC_ASSERT(k >= 0);
+        RC_ASSERT(k < even);
+        RC_ASSERT((k == 0 || width == 0 || value >= k * width));
+        RC_ASSERT((k == even - 1 || width == 0 || value <= (k + 1) * width));
+    }
+}
+
+TexelCodes integerCodes(int count) {
+    TexelCodes codes;
+    for (int c = 0; c < count; ++c) {
+        codes.lowSampled.push_back(float(c));
+    }
+    codes.highSampled = codes.lowSampled;
+    return codes;
+}
+
+TEST(ValueBins, ShareIntegersEvenly) {
+    const TexelCodes bytes = integerCodes(256);
+    const TexelCodes words = integerCodes(65536);
+    for (const int count : {8, 16, 32, 64, 128, 256}) {
+        const ValueBins ofBytes = valueBins(bytes, {0, 255}, count, false);
+        const ValueBins ofWords = valueBins(words, {4096, 8191}, count, false);
+        for (int c = 0; c < 256; ++c) {
+            EXPECT_EQ(ofBytes.binOfCode[c], c * count / 256);
+        }
+        for (int c = 0; c < 65536; ++c) {
+            ASSERT_EQ(ofWords.binOfCode[c], std::clamp((c - 4096) * count / 4096, 0, count - 1));
+        }
+    }
+}
+
+TEST(ValueBins, SeparateTheMinimumAlone) {
+    const ValueBins bins = valueBins(integerCodes(256), {10, 73}, 64, true);
+    for (int c = 0; c < 256; ++c) {
+        EXPECT_EQ(bins.binOfCode[c], std::clamp(c - 10, 0, 63)) << c;
+    }
+}
+
+TEST(ValueBins, OfASingleValue) {
+    for (const bool separate : {false, true}) {
+        const ValueBins bins = valueBins(integerCodes(256), {7, 7}, 16, separate);
+        EXPECT_EQ(bins.binOfCode[7], 0);
+        EXPECT_TRUE(std::is_sorted(bins.binOfCode.begin(), bins.binOfCode.end()));
+        EXPECT_LT(bins.binOfCode.back(), 16);
+    }
+}
+
+TexelCodes codesOf(TexelFormat format, std::vector<std::byte> data) {
+    Texels texels{.format = format, .data = std::move(data)};
+    texels.dims = {int(texels.data.size() / bytesPerTexel(format)), 1, 1};
+    return encodeCodes(texels);
+}
+
+template <class Texel>
+std::vector<std::byte> bytesOf(const std::vector<Texel>& texels) {
+    const auto bytes = std::as_bytes(std::span(texels));
+    return {bytes.begin(), bytes.end()};
+}
+
+/// Codes of halfs are dense around zero: bins are even in value nevertheless.
+TEST(ValueBins, OfHalfsAreEvenInValue) {
+    std::vector<std::uint16_t> halfs;
+    for (int value = -1024; value <= 1024; ++value) {
+        halfs.push_back(halfFromFloat(float(value)));
+    }
+    const TexelCodes codes = codesOf(TexelFormat::R16F, bytesOf(halfs));
+    const ValueBins bins = valueBins(codes, codeRange(codes), 16, false);
+    for (int i = 0; i < int(codes.codes.size()); ++i) {
+        EXPECT_EQ(bins.binOfCode[codes.codes[i]], std::min(15, i / 128)) << i - 1024;
+    }
+}
+
+TEST(ValueBins, OfFloatsAreEvenInValue) {
+    std::vector<float> floats;
+    for (int i = 0; i <= 4096; ++i) {
+        floats.push_back(float(i) * 0.25F - 300.0F);
+    }
+    const TexelCodes codes = codesOf(TexelFormat::R32fExact, bytesOf(floats));
+    const ValueBins bins = valueBins(codes, codeRange(codes), 16, false);
+    for (int i = 1; i <= 4096; ++i) { // a code's low end lies below its values: at borders, one bin
+        const int bin = bins.binOfCode[codes.codes[i]];
+        EXPECT_TRUE(bin == std::min(15, i / 256) || (i % 256 == 0 && bin == i / 256 - 1)) << i;
+    }
+}
+
+/// Real codes, too many for all pairs.
+RC_GTEST_PROP(VisibleBins, OfHalfsAndFloats, (unsigned seed)) {
+    std::mt19937 random(seed);
+    std::normal_distribution<float> normal(0.0F, 300.0F);
+    std::vector<float> floats(100);
+    std::generate(floats.begin(), floats.end(), [&] { return normal(random); });
+    std::vector<std::uint16_t> halfs;
+    std::transform(floats.begin(), floats.end(), std::back_inserter(halfs), halfFromFloat);
+    const TexelCodes codes = *rc::gen::arbitrary<bool>()
+                                 ? codesOf(TexelFormat::R16F, bytesOf(halfs))
+                                 : codesOf(TexelFormat::R32fExact, bytesOf(floats));
+    const auto center = double(floats[0]);
+    TransferTable table{center - 20.0, center + 20.0, std::vector<glm::vec4>(256)};
+    table.texels[random() % 256].a = 1.0F;
+    const CellVisibility visibility = cellVisibility(codes, Texels{}, table, 0.0);
+    const ValueBins bins = valueBins(codes, codeRange(codes), 64, *rc::gen::arbitrary<bool>());
+    const BinSet set = visibleBins(bins, visibility);
+    for (int i = 0; i < 2000; ++i) {
+        const std::uint16_t a = codes.codes[random() % 100];
+        const std::uint16_t b = codes.codes[random() % 100];
+        bool common = false;
+        const auto [low, high] = std::minmax(a, b);
+        for (int bin = bins.binOfCode[low]; bin <= bins.binOfCode[high]; ++bin) {
+            common = common || has(set, bin);
+        }
+        RC_ASSERT((common || !visibility.visible(low, high)));
+    }
+}
+
+TEST(CodeRange, IsThatOfAllCodes) {
+    std::mt19937 random(7);
+    for (const int size : {1, 1000, 700000}) { // one part, and several
+        TexelCodes codes;
+        codes.codes.resize(size);
+        std::generate(codes.codes.begin(), codes.codes.end(),
+                      [&] { return std::uint16_t(1000 + random() % 60000); });
+        const auto [least, most] = std::minmax_element(codes.codes.begin(), codes.codes.end());
+        const CodeRange range = codeRange(codes);
+        EXPECT_EQ(range.least, *least);
+        EXPECT_EQ(range.most, *most);
+    }
+}
+
+} // namespace
+} // namespace slabcast
