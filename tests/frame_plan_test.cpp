@@ -396,6 +396,17 @@ TEST(FramePlan, SkippingIsLeftOutWhereNothingIsEmpty) {
     EXPECT_EQ(planned({.skip = SkipStructure::None}, facts).skip, SkipStructure::None);
 }
 
+// A look at the structure must be spread over a few layers, unless one layer takes eight fetches.
+TEST(FramePlan, SkippingIsLeftOutOfThinPlanes) {
+    SceneFacts facts = boneFacts();
+    EXPECT_EQ(planned({.layersPerPlane = 3}, facts).skip, SkipStructure::None);
+    EXPECT_EQ(planned({.layersPerPlane = 4}, facts).skip, SkipStructure::Proximity);
+    EXPECT_EQ(planned({.skip = SkipStructure::Proximity, .layersPerPlane = 1}, facts).skip,
+              SkipStructure::Proximity);
+    facts.exactField = true;
+    EXPECT_EQ(planned({.layersPerPlane = 1}, facts).skip, SkipStructure::Proximity);
+}
+
 TEST(FramePlan, BakedTexelsNeedNeitherGradientsNorFetches) {
     SceneFacts facts = boneFacts();
     facts.exactField = true;

@@ -17,8 +17,8 @@ import cli_files as files  # noqa: E402
 
 SLABCAST = None  # the program, from the command line
 WIDTH, HEIGHT = 512, 256
-SCENE = ("phantom:shells:32", "--size", f"{WIDTH}x{HEIGHT}", "--camera", "20,10,4", "--layers-per-plane", "4",
-         "--form", "loop")
+SIZE = ("--size", f"{WIDTH}x{HEIGHT}")
+SCENE = ("phantom:shells:32", "--camera", "20,10,4", "--layers-per-plane", "4", "--form", "loop")
 # One dot per pixel: a margin, 7 rows of text, a margin.
 STRIP = HEIGHT - 7 - 2 * 4
 SUMS = {"iterations": ("stretches", "layers_evaluated"), "fetches": ("volume_fetches", "skip_fetches"),
@@ -45,7 +45,7 @@ class HeatmapTest(unittest.TestCase):
 
     def draws(self, *arguments):
         """The picture's rows of pixels and the statistics."""
-        run = self.run_cli(*SCENE, "-o", "h.png", "--stats", "h.json", *arguments)
+        run = self.run_cli(*SCENE, *SIZE, "-o", "h.png", "--stats", "h.json", *arguments)
         self.assertEqual(run.returncode, 0, run.stderr)
         png = files.Png((self.folder / "h.png").read_bytes())
         self.assertEqual((png.width, png.height), (WIDTH, HEIGHT))
@@ -71,7 +71,8 @@ class HeatmapTest(unittest.TestCase):
 
     def test_pixels_say_what_the_counters_count(self):
         for quantity, counters in SUMS.items():
-            for way in (("--skip", "none"), ("--skip", "proximity"), ("--stereo", "60"), ("--order", "front-to-back")):
+            all_ways = (("--skip", "none"), ("--stereo", "60"), ("--order", "front-to-back"), ("--skip", "proximity"))
+            for way in all_ways if quantity == "iterations" else all_ways[-1:]:
                 rows, stats = self.draws("--heatmap", quantity, *way)
                 heat = stats["heatmap"]
                 self.assertEqual(heat["quantity"], quantity)
@@ -94,7 +95,7 @@ class HeatmapTest(unittest.TestCase):
         self.assertEqual({bytes(pixel) for row in rows[:STRIP] for pixel in row}, {b"\0\0\0", b"\xff\xff\xff"})
 
     def test_light_in_exr_and_pictures_too_small_for_words(self):
-        for arguments in (("-o", "h.exr"), ("-o", "h.png", "--size", "16x16"), ("-o", "h.png", "--size", "1x1")):
+        for arguments in (("-o", "h.exr", *SIZE), ("-o", "h.png", "--size", "16x16"), ("-o", "h.png", "--size", "1x1")):
             run = self.run_cli(*SCENE, *arguments, "--heatmap", "fetches")
             self.assertEqual(run.returncode, 0, run.stderr)
             self.assertGreater((self.folder / arguments[1]).stat().st_size, 0)

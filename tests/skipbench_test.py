@@ -240,6 +240,9 @@ class RefusalTest(unittest.TestCase):
     def test_transfer_function_that_is_none(self):
         self.refuses("no preset 'bones'", "phantom:gap:8", "--tf", "bones", "--out", self.out)
 
+    def test_transfer_function_that_shows_nothing(self):
+        self.refuses("'CT bone' shows nothing", "phantom:shells:8", "--tf", "ct-bone", "--sizes", "8", "--out", self.out)
+
     def test_folder_that_cannot_be_made(self):
         with tempfile.NamedTemporaryFile() as file:
             self.refuses("cannot make this folder", "phantom:gap:8", "--out", Path(file.name) / "out")

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/gl/state_guard.h"
 #include "tests/support/render_support.h"
 
 namespace slabcast::test {
@@ -353,6 +354,34 @@ TEST_F(TerminationTest, LayerFollowsSizeAndPlan) {
     EXPECT_EQ(differingPixels(wide, draw(scene, marked, view, large)), 0);
     EXPECT_EQ(differingPixels(withoutMarks, draw(scene, plain, view, kSize)), 0);
     renderer().contextLost();
+}
+
+// A host that tests depth its own way round, with an offset and a reversed range.
+TEST_F(TerminationTest, HostsDepthStateStaysAndMovesNoMark) {
+    const Scene scene = ballScene(0.8);
+    const View view = asymmetricView(scene);
+    const FramePlan plan = frontToBack(scene, segments(1, SegmentForm::Loop), Way::Marks, 3);
+    const Picture expected = draw(scene, plan, view, kSize);
+    const gl::StateGuard forOtherTests;
+    gl::ColorTargets target;
+    ASSERT_TRUE(target.resize(kSize.x, kSize.y, {GL_RGBA16F, GL_DEPTH_COMPONENT16}).has_value());
+    target.begin();
+    gl::Enable(GL_DEPTH_TEST);
+    gl::Enable(GL_POLYGON_OFFSET_FILL);
+    gl::DepthFunc(GL_GREATER);
+    gl::DepthRangef(1.0F, 0.0F);
+    gl::DepthMask(GL_TRUE);
+    const ViewTarget where{view, target.framebuffer(), {0, 0, kSize.x, kSize.y}};
+    ASSERT_TRUE(renderer().draw(scene, plan, {&where, 1}).has_value());
+    EXPECT_EQ(differingPixels(expected, {kSize, target.read()}), 0);
+    GLint function = 0;
+    GLfloat range[2] = {};
+    gl::GetIntegerv(GL_DEPTH_FUNC, &function);
+    gl::GetFloatv(GL_DEPTH_RANGE, range);
+    EXPECT_EQ(function, GL_GREATER);
+    EXPECT_EQ(range[0], 1.0F);
+    EXPECT_EQ(range[1], 0.0F);
+    EXPECT_TRUE(gl::IsEnabled(GL_DEPTH_TEST) && gl::IsEnabled(GL_POLYGON_OFFSET_FILL));
 }
 
 TEST_F(TerminationTest, TheExtensionDecidesTheWay) {

@@ -1,6 +1,7 @@
 #include "core/frame/warm_up.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/gl/color_targets.h"
 #include "core/gl/state_guard.h"
@@ -9,21 +10,27 @@ namespace slabcast {
 
 namespace {
 
-/// Facts of what TFs may make of the scene: as thin, or as dense, as can be. Some of it is visible,
-/// so little that skipping pays.
+/// Facts of what TFs may make of the scene: from as thin as can be to as dense, in steps of a
+/// fifth. Some of it is visible, so little that skipping pays.
 std::vector<SceneFacts> factsOfOtherTransfers(const Scene& scene) {
     SceneFacts facts = scene.facts();
     facts.anythingVisible = true;
     facts.occupiedFraction = 0.0;
     std::vector<SceneFacts> all;
-    for (const double extinctionPerMm : {1e-9, 1e9}) {
-        facts.maxExtinctionPerMm = extinctionPerMm;
+    for (double exponent = -30.0; exponent <= 20.0; exponent += 0.25) {
+        facts.maxExtinctionPerMm = std::exp2(exponent);
         all.push_back(facts);
     }
     return all;
 }
 
-/// Plans of one scene, each but once.
+/// Drivers compile nothing more for the one than for the other.
+bool compileAlike(const FramePlan& a, const FramePlan& b) {
+    return a.variant == b.variant && a.order == b.order &&
+           (a.planesPerMark > 0) == (b.planesPerMark > 0);
+}
+
+/// Plans of one scene, of those that compile alike the first.
 Result<std::vector<FramePlan>> plansOf(const Scene& scene, Settings settings, const gl::Caps& caps,
                                        std::span<const RatioMeasurement> measurements) {
     std::vector<FramePlan> plans;
@@ -37,7 +44,10 @@ Result<std::vector<FramePlan>> plansOf(const Scene& scene, Settings settings, co
                 return tl::unexpected(one.error());
             }
             one->tighten = false; // there may be nothing to tighten around
-            if (std::find(plans.begin(), plans.end(), *one) == plans.end()) {
+            const bool isNew =
+                std::none_of(plans.begin(), plans.end(),
+                             [&](const FramePlan& known) { return compileAlike(known, *one); });
+            if (isNew) {
                 plans.push_back(std::move(*one));
             }
         }

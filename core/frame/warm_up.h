@@ -7,8 +7,8 @@
 namespace slabcast {
 
 /// Draws a pixel in every way that edits of the scene's TF may lead to, into a target of its own:
-/// with each structure that may come to serve, or none where nearly all is visible; dense enough
-/// for rays to end early, or not. Drivers put compiling off until a program is first drawn with;
+/// with each structure that may come to serve, or none where nearly all is visible; as thin or as
+/// dense as can be. Drivers put compiling off until a program is first drawn with;
 /// after this none is left for a frame to wait for. `settings`, `measurements`: as plan() will be
 /// given them; `views`: in whose way is drawn. Restores the GL state (gl::StateGuard).
 /// Fails: as plan() and Renderer::prepare(). Contract: the scene is edited.

@@ -83,18 +83,17 @@ double sphere(const Place& place) {
     return 255.0 * inside(glm::length(place.centred) - 0.8, place.voxelEdge);
 }
 
-/// A ball of 900 with a rind of 300 and a vessel tree of 1500 inside, in 0: under a transfer
-/// function that shows the outer two alone the bulk lies in the gap, as soft tissue does between
-/// skin and bone. Values only rise from the outside in, and rind and tree do not meet: borders pass
-/// 0 to 300, 300 to 900 and 900 to 1500, and no other.
+/// A matrix of 900 that fills the box, with eight pores of 300 towards its corners and a vessel
+/// tree of 1500 in its middle: under a transfer function that shows the outer two alone the bulk
+/// lies in the gap, as in a casting of which voids and inclusions are looked for. Pores and tree do
+/// not meet, so borders pass 300 to 900 and 900 to 1500, and no value outside.
 double gap(const Place& place) {
-    constexpr double kRadius = 0.95;
-    constexpr double kRind = 0.05;
-    constexpr double kTree = 0.6; // of its own size
-    const double outer = glm::length(place.centred) - kRadius;
+    constexpr double kTree = 0.6; // of its own size: within 0.6 along each axis
+    constexpr glm::dvec3 kPore(0.75);
+    constexpr double kPoreRadius = 0.2;
     const double tree = kTree * vesselDistance(place.centred / kTree, place.voxelEdge / kTree);
-    return 300.0 * inside(outer, place.voxelEdge) + 600.0 * inside(outer + kRind, place.voxelEdge) +
-           600.0 * inside(tree, place.voxelEdge);
+    const double pore = glm::distance(glm::abs(place.centred), kPore) - kPoreRadius;
+    return 900.0 + 600.0 * inside(tree, place.voxelEdge) - 600.0 * inside(pore, place.voxelEdge);
 }
 
 struct Phantom {
@@ -113,7 +112,7 @@ constexpr std::array kPhantoms{
     Phantom{"ramp", "linear along x, 0 at the one face and 1 at the other", VoxelType::F32, ramp},
     Phantom{"checkerboard", "cubes of 8 voxels, 0 and 255 in turn", VoxelType::U8, checkerboard},
     Phantom{"gap",
-            "vessels of 1500 in a ball of 900 with a rind of 300; the preset gap hides the 900",
+            "vessels of 1500 and pores of 300 in a matrix of 900, which the preset gap hides",
             VoxelType::U16, gap},
     Phantom{"sphere", "a ball of 255 in 0, 0.8 of the shortest edge across", VoxelType::U8, sphere},
 };

@@ -33,23 +33,25 @@ Settings plain(Settings settings) {
 
 } // namespace
 
-Result<EditBench> EditBench::open(Stage stage, const EditOptions& options, const LiveOptions& live,
-                                  const TransferFunction& start) {
-    Result<Renderer> renderer = Renderer::create(stage.session().caps);
-    if (!renderer) {
-        return tl::unexpected(renderer.error());
+Result<EditBench> EditBench::open(const Stage& stage, const EditOptions& options,
+                                  const LiveOptions& live, const TransferFunction& start,
+                                  const FramePlan& decided) {
+    Result<Renderer> policys = Renderer::create(stage.session().caps);
+    Result<Renderer> others = Renderer::create(stage.session().caps);
+    if (!policys || !others) {
+        return tl::unexpected(policys ? others.error() : policys.error());
     }
-    EditBench bench(std::move(stage), std::move(*renderer), options);
-    return bench.makeScenes(live, start).and_then([&] { return bench.warmUp(); }).map([&] {
+    EditBench bench(stage, options, std::move(*policys), std::move(*others));
+    return bench.makeScenes(live, start).and_then([&] { return bench.warmUp(decided); }).map([&] {
         return std::move(bench);
     });
 }
 
 Result<void> EditBench::makeScenes(const LiveOptions& live, const TransferFunction& start) {
     naiveSkip_ = live.settled.structure != SkipStructure::None ? live.settled : SkipOptions{};
-    Result<Scene> naive = stage_.variation(start, naiveSkip_);
-    Result<Scene> edited = stage_.variation(start, live.settled);
-    Result<Scene> octree = stage_.variation(start, live.always);
+    Result<Scene> naive = stage_->variation(start, naiveSkip_);
+    Result<Scene> edited = stage_->variation(start, live.settled);
+    Result<Scene> octree = stage_->variation(start, live.always);
     for (const Result<Scene>* made : {&naive, &edited, &octree}) {
         if (!*made) {
             return tl::unexpected(made->error());
@@ -63,39 +65,31 @@ Result<void> EditBench::makeScenes(const LiveOptions& live, const TransferFuncti
     return live_.startEditing(live).and_then([&] { return octree_.startEditing(octreeAlone); });
 }
 
-Result<void> EditBench::warmUp() {
-    stage_.show(naive_);
+Result<void> EditBench::warmUp(const FramePlan& decided) {
+    const Progress progress("warming up");
     settings_ = options_.settings;
     settings_.skip.reset(); // by what serves
-    Result<FramePlan> decided = stage_.decide(settings_);
-    if (!decided) {
-        return tl::unexpected(decided.error());
-    }
-    firstPlan_ = std::move(*decided);
     settings_.planes.reset();
-    settings_.layersPerPlane = firstPlan_.layersPerPlane;
-    settings_.form = firstPlan_.variant.unroll > 0 ? SegmentForm::Unrolled : SegmentForm::Loop;
-    const Progress progress("warming up");
-    Result<void> done = stage_.prepare(firstPlan_).and_then([&] {
-        const GLenum format = firstPlan_.target == TargetFormat::Rgba8 ? GL_RGBA8 : GL_RGBA16F;
-        return target_.resize(options_.size.x, options_.size.y, {format});
-    });
-    for (Renderer* renderer : {&renderer_, &stage_.renderer()}) {
+    settings_.layersPerPlane = decided.layersPerPlane;
+    settings_.form = decided.variant.unroll > 0 ? SegmentForm::Unrolled : SegmentForm::Loop;
+    const GLenum format = decided.target == TargetFormat::Rgba8 ? GL_RGBA8 : GL_RGBA16F;
+    Result<void> done = target_.resize(options_.size.x, options_.size.y, {format});
+    for (Renderer* renderer : {&policysRenderer_, &othersRenderer_}) {
         done = done.and_then([&] {
-            return warmUpForEditing(*renderer, live_, settings_, stage_.session().caps, {},
-                                    stage_.views(0.0));
+            return warmUpForEditing(*renderer, live_, settings_, stage_->session().caps, {},
+                                    stage_->views(0.0));
         });
     }
     return done;
 }
 
 Result<FramePlan> EditBench::planOf(const Scene& scene, const Settings& settings) const {
-    return plan(scene.facts(), settings, stage_.session().caps, {});
+    return plan(scene.facts(), settings, stage_->session().caps, {});
 }
 
 Result<void> EditBench::draw(Renderer& renderer, const Scene& scene, const FramePlan& plan,
                              double turnDegrees) {
-    std::vector<ViewTarget> views = stage_.views(turnDegrees);
+    std::vector<ViewTarget> views = stage_->views(turnDegrees);
     for (ViewTarget& view : views) {
         view.framebuffer = target_.framebuffer();
     }
@@ -117,9 +111,10 @@ Result<void> EditBench::drawLive(const EditFrame& frame, double turnDegrees, Edi
     row.progress = live_.work(options_.workBudgetMs);
     row.workMs = watch.lapMs();
     const Result<FramePlan> plan = planOf(live_, settings_);
-    Result<void> done = plan ? renderer_.prepare(live_, *plan) : tl::unexpected(plan.error());
+    Result<void> done =
+        plan ? policysRenderer_.prepare(live_, *plan) : tl::unexpected(plan.error());
     row.prepareMs = watch.lapMs();
-    done = done.and_then([&] { return draw(renderer_, live_, *plan, turnDegrees); });
+    done = done.and_then([&] { return draw(policysRenderer_, live_, *plan, turnDegrees); });
     row.drawMs = watch.lapMs();
     row.frameMs = row.editMs + row.workMs + row.prepareMs + row.drawMs;
     if (done) {
@@ -136,12 +131,12 @@ Result<void> EditBench::drawOctree(const EditFrame& frame, double turnDegrees, E
         done = octree_.edit(*frame.newTransfer);
     }
     const Result<FramePlan> plan = planOf(octree_, settings);
-    done = plan ? done.and_then([&] { return stage_.renderer().prepare(octree_, *plan); })
+    done = plan ? done.and_then([&] { return othersRenderer_.prepare(octree_, *plan); })
                 : tl::unexpected(plan.error());
     std::vector<double> times;
     for (int k = -1; k < options_.octreeFrames && done; ++k) { // -1 warms up
         Stopwatch watch;
-        done = draw(stage_.renderer(), octree_, *plan, turnDegrees);
+        done = draw(othersRenderer_, octree_, *plan, turnDegrees);
         if (k >= 0) {
             times.push_back(watch.lapMs());
         }
@@ -152,7 +147,7 @@ Result<void> EditBench::drawOctree(const EditFrame& frame, double turnDegrees, E
 
 /// Builds all anew where there is an edit, and only draws where there is none.
 Result<void> EditBench::drawNaive(const EditFrame& frame, double turnDegrees, EditRow& row) {
-    Renderer& renderer = stage_.renderer();
+    Renderer& renderer = othersRenderer_;
     const auto prepared = [&] {
         return planOf(naive_, settings_).and_then([&](FramePlan plan) {
             return renderer.prepare(naive_, plan).map([&] { return plan; });
@@ -180,9 +175,8 @@ Result<void> EditBench::compare(double turnDegrees, const std::vector<glm::vec4>
     if (!plan) {
         return tl::unexpected(plan.error());
     }
-    return stage_.renderer()
-        .prepare(naive_, *plan)
-        .and_then([&] { return draw(stage_.renderer(), naive_, *plan, turnDegrees); })
+    return othersRenderer_.prepare(naive_, *plan)
+        .and_then([&] { return draw(othersRenderer_, naive_, *plan, turnDegrees); })
         .map([&] { row.equal = target_.read() == picture; });
 }
 
@@ -203,7 +197,7 @@ Result<EditRow> EditBench::replay(const EditFrame& frame, double turnDegrees) {
         return tl::unexpected(done.error());
     }
     if (const Result<FramePlan> plan = planOf(live_, settings_); plan) {
-        row.counters = renderer_.countWork(live_, *plan, stage_.views(turnDegrees));
+        row.counters = policysRenderer_.countWork(live_, *plan, stage_->views(turnDegrees));
     }
     return row;
 }

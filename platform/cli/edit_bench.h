@@ -28,32 +28,29 @@ struct EditRow {
 
 /// Replays edits with the live policy and, frame by frame, beside it what it is measured against.
 /// Each has its own scene under the same transfer function; all share the texels. The policy has a
-/// renderer of its own, so that the others leave its textures alone.
+/// renderer of its own, so that the others leave its textures alone. What is slow once, as
+/// compiling is, is slow once in every bench.
 class EditBench {
 public:
-    /// `live`: what the policy is to do. Decides the ratio, warms up.
-    static Result<EditBench> open(Stage stage, const EditOptions& options, const LiveOptions& live,
-                                  const TransferFunction& start);
+    /// `live`: what the policy is to do; `decided`: a plan whose ratio all frames are to have.
+    /// Warms up. The stage must outlive the bench.
+    static Result<EditBench> open(const Stage& stage, const EditOptions& options,
+                                  const LiveOptions& live, const TransferFunction& start,
+                                  const FramePlan& decided);
 
     Result<EditRow> replay(const EditFrame& frame, double turnDegrees);
 
-    const Stage& stage() const { return stage_; }
-    const FramePlan& firstPlan() const { return firstPlan_; } // whose ratio all frames have
     const LiveSkip& live() const { return *live_.live(); }
-    int layersPerPlane() const { return settings_.layersPerPlane.value_or(1); }
-    int planesNow() const {
-        const int total = totalLayers(settings_, live_.facts());
-        return (total + layersPerPlane() - 1) / layersPerPlane();
-    }
     /// What one build of the structure of the TF of now takes, for the naive policy.
     double naiveBuildMs() const { return naive_.skip().buildMs; }
 
 private:
-    EditBench(Stage stage, Renderer renderer, const EditOptions& options)
-        : stage_(std::move(stage)), renderer_(std::move(renderer)), options_(options) {}
+    EditBench(const Stage& stage, const EditOptions& options, Renderer policys, Renderer others)
+        : stage_(&stage), options_(options), policysRenderer_(std::move(policys)),
+          othersRenderer_(std::move(others)) {}
 
     Result<void> makeScenes(const LiveOptions& live, const TransferFunction& start);
-    Result<void> warmUp();
+    Result<void> warmUp(const FramePlan& decided);
     Result<FramePlan> planOf(const Scene& scene, const Settings& settings) const;
     Result<void> draw(Renderer& renderer, const Scene& scene, const FramePlan& plan,
                       double turnDegrees);
@@ -62,10 +59,9 @@ private:
     Result<void> drawNaive(const EditFrame& frame, double turnDegrees, EditRow& row);
     Result<void> compare(double turnDegrees, const std::vector<glm::vec4>& picture, EditRow& row);
 
-    Stage stage_;       // its renderer draws for comparison
-    Renderer renderer_; // the policy's
+    const Stage* stage_;
     EditOptions options_;
-    FramePlan firstPlan_;
+    Renderer policysRenderer_, othersRenderer_;
     Settings settings_; // with the ratio decided
     SkipOptions naiveSkip_;
     gl::ColorTargets target_;

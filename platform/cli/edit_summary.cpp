@@ -49,6 +49,37 @@ json framesToCorrect(const std::vector<EditRow>& rows) {
 
 } // namespace
 
+std::vector<EditRow> mediansOf(const std::vector<std::vector<EditRow>>& replays) {
+    std::vector<EditRow> rows = replays.front();
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        for (double EditRow::*time :
+             {&EditRow::frameMs, &EditRow::editMs, &EditRow::workMs, &EditRow::prepareMs,
+              &EditRow::drawMs, &EditRow::octreeMs, &EditRow::naiveMs}) {
+            std::vector<double> times;
+            for (const std::vector<EditRow>& replay : replays) {
+                times.push_back(replay[k].*time);
+            }
+            rows[k].*time = summarise(std::move(times)).median;
+        }
+        for (const std::vector<EditRow>& replay : replays) {
+            if (!replay[k].equal.value_or(true)) {
+                rows[k].equal = false;
+            }
+        }
+    }
+    return rows;
+}
+
+double worstOverOctree(const std::vector<std::vector<EditRow>>& replays) {
+    double worst = 0.0;
+    for (const std::vector<EditRow>& replay : replays) {
+        for (const EditRow& row : replay) {
+            worst = std::max(worst, row.frameMs / row.octreeMs);
+        }
+    }
+    return worst;
+}
+
 json toJson(const EditRow& row, std::size_t index) {
     json result = {{"frame", index},
                    {"step", row.step},

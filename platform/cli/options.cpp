@@ -375,6 +375,12 @@ void bindEdit(CLI::App& command, EditOptions& o) {
         ->type_name("N")
         ->default_str(fmt::format("{}", o.quietFrames))
         ->group(edits);
+    addNumber(command, "--replays", o.replays, 1, 1000,
+              "replay all of it so many times: each frame's times are medians, which leaves out "
+              "what other programs on the machine take")
+        ->type_name("N")
+        ->default_str(fmt::format("{}", o.replays))
+        ->group(edits);
     addNumber(command, "--octree-frames", o.octreeFrames, 1, 1000,
               "frames of the octree, the median of which each frame is compared with")
         ->type_name("N")

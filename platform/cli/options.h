@@ -82,6 +82,7 @@ struct EditOptions : SceneOptions {
     int quietFrames = LiveOptions{}.quietFrames;
     std::optional<double> budgetMs; // of a frame; none: by the octree's
     int octreeFrames = 3;           // that one is measured against
+    int replays = 1;
     bool verify = false;
 };
 

@@ -111,6 +111,13 @@ json describe(const Stage& stage, const std::string& input, const std::string& l
 
 /// All tables of one volume but its sizes.
 Result<void> measureVolume(SkipBench& bench, const std::string& input, json& volumes) {
+    if (!bench.stage.scene().facts().anythingVisible) {
+        return fail(
+            ErrorCode::InvalidArgument,
+            fmt::format("{}: '{}' shows nothing of it, so there is nothing to compare: give "
+                        "another --tf",
+                        input, bench.stage.scene().look().tf.name));
+    }
     const Workshop workshop(bench.stage);
     volumes.push_back(describe(bench.stage, input, bench.volume, workshop));
     const Result<std::vector<SkipOptions>> best = searchParameters(bench);

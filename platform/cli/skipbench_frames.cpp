@@ -17,8 +17,6 @@ using nlohmann::json;
 constexpr double kRaceMs = 30e3;
 constexpr double kQuickRaceMs = 6e3;
 constexpr int kHybridLayers[] = {8, 16, 32, 64};
-constexpr int kShrink = 2; // of the picture's edge, where ratios are tried
-constexpr int kTimedFrames = 3;
 
 /// A subject with planes of the one kind or the other.
 struct Seat {
@@ -115,20 +113,16 @@ Result<int> bestLayers(SkipBench& bench, const Seat& seat, const BenchMode& mode
         if (!entrant) {
             return tl::unexpected(entrant.error());
         }
-        double least = std::numeric_limits<double>::infinity();
-        for (int k = 0; k < kTimedFrames; ++k) {
-            const Result<double> ms = timedFrame(bench.stage, *entrant, 0.0);
-            if (!ms) {
-                return tl::unexpected(ms.error());
-            }
-            least = std::min(least, *ms);
+        const Result<double> ms = leastMs(bench.stage, *entrant);
+        if (!ms) {
+            return tl::unexpected(ms.error());
         }
         json row = entrant->row;
-        row["ms"] = least;
+        row["ms"] = *ms;
         bench.rows.push_back(std::move(row));
-        if (least < bestMs) {
+        if (*ms < bestMs) {
             best = layers;
-            bestMs = least;
+            bestMs = *ms;
         }
     }
     return best;
@@ -140,7 +134,7 @@ Result<void> castSegments(SkipBench& bench, std::span<const Subject> subjects) {
         for (const Seat& seat : seatsOf(subjects)) {
             bench.progress.show(fmt::format("{}: hybrid, {}, {}", bench.volume, mode.name,
                                             name(seat.subject->options.structure)));
-            bench.stage.resize(glm::max(bench.options.size / kShrink, glm::ivec2(1)));
+            bench.stage.resize(smaller(bench.options.size));
             const Result<int> layers = bestLayers(bench, seat, mode);
             bench.stage.resize(bench.options.size);
             Result<Entrant> entrant = layers.and_then(
@@ -183,6 +177,10 @@ Result<void> countWork(SkipBench& bench) {
 }
 
 } // namespace
+
+glm::ivec2 smaller(glm::ivec2 size) {
+    return glm::max(size / 2, glm::ivec2(1));
+}
 
 Settings settingsOf(const SkipbenchOptions& options, const BenchMode& mode) {
     Settings settings = options.settings;

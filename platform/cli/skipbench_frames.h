@@ -21,6 +21,9 @@ inline constexpr BenchMode kShading{"shading", true, true};
 Settings settingsOf(const SkipbenchOptions& options, const BenchMode& mode);
 Settings rayCasting(const SkipbenchOptions& options, const BenchMode& mode);
 
+/// Of a picture on which many choices are tried: half the edge.
+glm::ivec2 smaller(glm::ivec2 size);
+
 /// Frame times and work of all subjects: ray casting in every mode, hybrid at the best ratio of
 /// each, slicing; the last two with planes of the whole sphere, and as rectangles around what is
 /// visible. Adds rows of the tables "frames", "ratios" and "work" (of the usual parameters, equal

@@ -9,7 +9,27 @@ namespace slabcast {
 namespace {
 
 using nlohmann::json;
+constexpr int kFramesOfLeast = 3;
+
 using Samples = std::vector<std::vector<double>>; // of each entrant, round by round
+
+/// The time of one frame after one that is not counted, ms.
+Result<double> timedFrame(Stage& stage, const Entrant& entrant, double turnDegrees) {
+    stage.show(*entrant.scene);
+    if (Result<void> ready = stage.prepare(entrant.plan); !ready) {
+        return tl::unexpected(ready.error());
+    }
+    if (Result<double> first = stage.drawTimed(entrant.plan, turnDegrees); !first) {
+        return first;
+    }
+    return stage.drawTimed(entrant.plan, turnDegrees);
+}
+
+/// What fits into the time, but neither too few nor more than asked for.
+int roundsWithin(double budgetMs, double roundMs, int most) {
+    return std::clamp(static_cast<int>(budgetMs / std::max(roundMs, 1e-3)), kFewestFrames,
+                      std::max(most, kFewestFrames));
+}
 
 /// Compiles and uploads for the first time; what a round takes from then on.
 Result<double> warmUp(Stage& stage, const std::vector<Entrant>& entrants) {
@@ -58,20 +78,13 @@ Result<Entrant> entrantOf(const Stage& stage, const Scene& scene, const Settings
     });
 }
 
-Result<double> timedFrame(Stage& stage, const Entrant& entrant, double turnDegrees) {
-    stage.show(*entrant.scene);
-    if (Result<void> ready = stage.prepare(entrant.plan); !ready) {
-        return tl::unexpected(ready.error());
+Result<double> leastMs(Stage& stage, const Entrant& entrant) {
+    Result<double> least = timedFrame(stage, entrant, 0.0);
+    for (int k = 1; least && k < kFramesOfLeast; ++k) {
+        least =
+            stage.drawTimed(entrant.plan, 0.0).map([&](double ms) { return std::min(ms, *least); });
     }
-    if (Result<double> first = stage.drawTimed(entrant.plan, turnDegrees); !first) {
-        return first;
-    }
-    return stage.drawTimed(entrant.plan, turnDegrees);
-}
-
-int roundsWithin(double budgetMs, double roundMs, int most) {
-    return std::clamp(static_cast<int>(budgetMs / std::max(roundMs, 1e-3)), kFewestFrames,
-                      std::max(most, kFewestFrames));
+    return least;
 }
 
 Result<json> race(Stage& stage, const std::vector<Entrant>& entrants, int rounds, double budgetMs) {

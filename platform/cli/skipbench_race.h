@@ -19,11 +19,9 @@ struct Entrant {
 Result<Entrant> entrantOf(const Stage& stage, const Scene& scene, const Settings& settings,
                           nlohmann::json row);
 
-/// The time of one frame after one that is not counted, ms.
-Result<double> timedFrame(Stage& stage, const Entrant& entrant, double turnDegrees);
-
-/// The most frames that a race of this many entrants may draw each within the time.
-int roundsWithin(double budgetMs, double roundMs, int most);
+/// The least of a few frames, after one that is not counted: what disturbs a frame only ever makes
+/// it longer. For choices among many, before a race decides between few.
+Result<double> leastMs(Stage& stage, const Entrant& entrant);
 
 /// All entrants on equal terms: in every round each draws one frame of the same view, after one
 /// that is not counted, in an order that is shuffled anew, so that the drift of a busy machine hits

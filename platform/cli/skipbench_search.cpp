@@ -13,20 +13,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kShrink = 2; // of the picture's edge
-constexpr int kTimedFrames = 3;
 constexpr std::size_t kFinalists = 3; // of a structure
 constexpr double kFinalsMs = 20e3;
-
-/// The least of a few: what disturbs a frame only ever makes it longer.
-Result<double> leastMs(Stage& stage, const Entrant& entrant) {
-    Result<double> least = timedFrame(stage, entrant, 0.0);
-    for (int k = 1; least && k < kTimedFrames; ++k) {
-        least =
-            stage.drawTimed(entrant.plan, 0.0).map([&](double ms) { return std::min(ms, *least); });
-    }
-    return least;
-}
 
 struct Tried {
     SkipOptions options;
@@ -111,7 +99,7 @@ Result<std::vector<SkipOptions>> searchParameters(SkipBench& bench) {
             continue;
         }
         const glm::ivec2 size = bench.options.size;
-        bench.stage.resize(glm::max(size / kShrink, glm::ivec2(1)));
+        bench.stage.resize(smaller(size));
         const Result<std::vector<Tried>> tried = triedOf(bench, usual.structure);
         bench.stage.resize(size);
         const Result<SkipOptions> winner =

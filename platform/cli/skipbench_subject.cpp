@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <fmt/core.h>
-
 #include "core/skip/octree.h"
 
 namespace slabcast {
@@ -68,23 +66,6 @@ json toJson(const SkipOptions& o) {
         row["traversal"] = name(o.traversal);
     }
     return row;
-}
-
-std::string describe(const SkipOptions& o) {
-    if (o.structure == SkipStructure::None) {
-        return "";
-    }
-    std::string text = fmt::format("{} voxels", o.blockEdgeVoxels);
-    if (o.structure == SkipStructure::BitfieldOctree) {
-        text += fmt::format(", {} bits", o.bits);
-    }
-    if (o.structure == SkipStructure::Partitioned) {
-        text += fmt::format(", {} partitions", o.partitions);
-    }
-    if (isOctree(o.structure)) {
-        text += fmt::format(", level {}, {}", o.initialLevel, name(o.traversal));
-    }
-    return text;
 }
 
 std::vector<SkipOptions> searchGrid(SkipStructure structure, glm::ivec3 dims, bool quick) {

@@ -30,21 +30,20 @@ struct Subject {
 /// Structure and parameters, as rows hold them: no others than the structure's own.
 nlohmann::json toJson(const SkipOptions& options);
 
-/// The same in a few words: "4 voxels, 32 bits, level 2".
-std::string describe(const SkipOptions& options);
-
 /// Parameters that a search tries, for a volume of these dims; alike ones once.
 std::vector<SkipOptions> searchGrid(SkipStructure structure, glm::ivec3 dims, bool quick);
 
 /// Every structure with usual parameters: blocks or leaves of 4 voxels, 32 bits, 64 partitions.
 std::vector<SkipOptions> usualStructures(const SkipbenchOptions& options);
 
-/// Every subject that can be had, none first; where a structure is refused, `refused` gets its
-/// options and why.
+/// What cannot be had, and why.
 struct Refusal {
     SkipOptions options;
     Error error;
 };
+
+/// A subject for each of the structures but those that are over their memory budget: `refused` gets
+/// these.
 Result<std::vector<Subject>> subjectsOf(const Stage& stage,
                                         const std::vector<SkipOptions>& structures,
                                         std::vector<Refusal>& refused);

@@ -1,0 +1,83 @@
+"""Replayed edits as the page needs them: read and checked, frame by frame."""
+
+from dataclasses import dataclass
+from itertools import groupby
+
+import page_input
+from page_input import BadInput, number
+
+AGAIN = "run `slabcast edit` again"
+TIMES = ("frameMs", "octreeMs", "naiveMs")
+PARTS = {"editMs": "edit", "workMs": "rebuilding", "prepareMs": "plan and uploads", "drawMs": "drawing"}
+
+
+@dataclass(eq=False)
+class Frame:
+    raw: dict
+    step: str
+    edited: bool
+    structure: str
+    swapped: bool
+    times: dict  # ms by name, of TIMES and PARTS
+
+    def __getattr__(self, name):
+        if name in self.times:
+            return self.times[name]
+        raise AttributeError(name)
+
+    def count(self, name):
+        """Of the work counters; None where the device cannot count."""
+        return number(page_input.section(self.raw, "counters").get(name))
+
+    @property
+    def over_octree(self):
+        return self.times["frameMs"] / self.times["octreeMs"]
+
+
+@dataclass
+class Edit:
+    raw: dict
+    frames: list
+
+    def section(self, name):
+        return page_input.section(self.raw, name)
+
+    @property
+    def budget(self):
+        return number(self.section("summary").get("budget_ms"))
+
+    @property
+    def structures(self):
+        """Those that served, in the order in which they first did."""
+        return list(dict.fromkeys(frame.structure for frame in self.frames))
+
+    @property
+    def edits(self):
+        return [frame for frame in self.frames if frame.edited]
+
+    def runs(self, key):
+        """[(value, first frame, frame after the last)] of neighbours with the same `key(frame)`."""
+        runs, first = [], 0
+        for value, alike in groupby(self.frames, key):
+            length = sum(1 for _ in alike)
+            runs.append((value, first, first + length))
+            first += length
+        return runs
+
+
+def _frame(raw, where):
+    times = {name: number(raw.get(name)) for name in TIMES}
+    times |= {name: number(page_input.section(raw, "parts").get(name)) for name in PARTS}
+    for name, value in times.items():
+        if value is None or value < 0:
+            raise BadInput(f"{where}: {name} is no time; {AGAIN}")
+    if times["octreeMs"] == 0:
+        raise BadInput(f"{where}: octreeMs is 0; {AGAIN}")
+    return Frame(raw, str(raw.get("step", "")), raw.get("edit") is True, str(raw.get("structure", "unknown")),
+                 raw.get("progress") == "swapped", times)
+
+
+def load(folder):
+    """The edits in DIR/edit.json. Raises BadInput."""
+    path, raw = page_input.read(folder, "edit.json", "rows", "edit")
+    return Edit(raw, [_frame(row, f"{path}: rows[{i}]") for i, row in enumerate(raw["rows"])])

@@ -1,0 +1,139 @@
+"""Replayed edits as one self-contained HTML page."""
+
+import edit_plots as plots
+from page_html import (MISSING, by, card, cards, command, device_facts, document, esc, facts, figure, figures, masthead,
+                       mebibytes, plural, section, table, times)
+from page_input import number, section as part
+
+GOAL = 1.5  # octree frames, of the worst frame
+WORST = 10  # frames that are listed
+CHANGED = {"script": "a script", "interpolation": "an interpolation", "usual": "edits of every kind"}
+
+
+def of_summary(edit, *path):
+    value = edit.section("summary")
+    for name in path:
+        value = part(value, name) if name != path[-1] else value.get(name)
+    return number(value)
+
+
+def head(edit):
+    summary, volume, device = edit.section("summary"), edit.section("volume"), edit.section("device")
+    worst, naive = of_summary(edit, "worst_over_octree_frame"), of_summary(edit, "naive", "worst_over_octree_frame")
+    found = [card("Worst frame", times(worst), f"of an octree frame; rebuilding all at once: {times(naive)}",
+                  "skips" if worst is not None and worst <= GOAL else "")]
+    equal = number(summary.get("frames_equal"))
+    if equal is not None:
+        found.append(card("From an edit to its picture", plural(int(summary.get("frames_to_correct", 0)), "frame"),
+                          f"{equal:.0f} of {len(edit.frames)} pictures as drawn from scratch, bit for bit",
+                          "skips" if equal == len(edit.frames) else ""))
+    else:
+        found.append(card("From an edit to its picture", MISSING, "not compared: --verify does"))
+    over = number(summary.get("frames_over_budget"))
+    found.append(card("Frames over the budget", figures(over),
+                      f"of {len(edit.frames)}; {figures(edit.budget)} ms; rebuilding all at once: "
+                      f"{figures(of_summary(edit, 'naive', 'frames_over_budget'))}", "skips" if over == 0 else ""))
+    line = ", ".join(filter(None, (esc(volume.get("name", "volume")), by(volume.get("dims", [])),
+                                   plural(len(edit.edits), "edit"), esc(device.get("renderer", "unknown device")))))
+    words = ("<p>A transfer function is edited while the volume is drawn. The frame after an edit skips by an octree that "
+             "is right under any transfer function; when the hand rests, what skips faster under this one is rebuilt "
+             "a few milliseconds at a time.</p>")
+    return masthead("live editing", "Is any frame of an edit slow?", line, device, words + cards(found))
+
+
+def short_ms(value):
+    return MISSING if value is None else "< 0.01" if value < 0.01 else figures(value)
+
+
+def work(edit):
+    drawn = figure(plots.fetches, edit, "Texels that the live policy's frames look at: what they cost whatever the "
+                   "machine. Counted beside the timed frames.")
+    return drawn and plots.key_of_fetches() + drawn
+
+
+def budget_words(edit):
+    if not edit.budget:
+        return ""
+    given = edit.section("summary").get("budget_given") is True
+    why = "as asked for" if given else f"{GOAL} times the median frame of the octree"
+    return f" The dashed line is the budget: {figures(edit.budget)} ms, {why}."
+
+
+def compared(edit):
+    """A line per way: what its frames take."""
+    summary = edit.section("summary")
+    rows = []
+    for name, of_all, of_edits, worst, over in (
+            ("live policy", part(summary, "frame_ms"), part(summary, "edit_frame_ms"),
+             of_summary(edit, "worst_over_octree_frame"), of_summary(edit, "frames_over_budget")),
+            ("naive: all rebuilt at every edit", part(part(summary, "naive"), "frame_ms"),
+             part(part(summary, "naive"), "edit_frame_ms"), of_summary(edit, "naive", "worst_over_octree_frame"),
+             of_summary(edit, "naive", "frames_over_budget")),
+            ("octree that was there, nothing edited", part(summary, "octree_frame_ms"), {}, None, None)):
+        rows.append([name, *(figures(of_all.get(key)) for key in ("median", "p90", "max")),
+                     figures(of_edits.get("median")), figures(of_edits.get("max")), times(worst), figures(over)])
+    return table(["ms per frame", "median", "90 %", "worst", "with an edit: median", "with an edit: worst",
+                  "worst, octree frames", "over budget"], rows)
+
+
+def worst_frames(edit):
+    slowest = sorted(enumerate(edit.frames), key=lambda one: -one[1].over_octree)[:WORST]
+    rows = [[f"{i} <i>{esc(frame.step)}{', edit' if frame.edited else ''}{', hand-over' if frame.swapped else ''}</i>",
+             times(frame.over_octree), *(short_ms(frame.times[name]) for name in (
+                 "octreeMs", "frameMs", "editMs", "workMs", "prepareMs", "drawMs")), esc(frame.structure)]
+            for i, frame in slowest]
+    return table(["ms of frame", "octree frames", "octree", "frame", "edit", "rebuilding", "uploads", "drawing",
+                  "skips by"], rows, css="rows")
+
+
+def builds(edit):
+    made = edit.section("builds")
+    rows = []
+    for name, entry, ms, when in (("right under any transfer function", part(made, "always"), "ms",
+                                   "once, when editing begins"),
+                                  ("faster under one of them", part(made, "settled"), "lastMs",
+                                   "in pieces, when edits pause")):
+        if entry:
+            rows.append([name, esc(entry.get("structure", "")), figures(entry.get("blockEdge")),
+                         figures(entry.get(ms)), mebibytes(entry.get("gpuBytes")) or MISSING, when])
+    if number(made.get("naiveMs")) is not None:
+        rows.append(["naive", esc(part(made, "settled").get("structure", "proximity")), MISSING,
+                     figures(made["naiveMs"]), MISSING, "in every frame with an edit"])
+    return table(["structure", "kind", "block edge", "built in, ms", "texture", "when"], rows) if rows else ""
+
+
+def run_facts(edit):
+    conditions = edit.section("conditions")
+    replays = number(conditions.get("replays"))
+    single = of_summary(edit, "worst_of_single_replays")
+    return facts([
+        *device_facts(edit.raw),
+        ("Picture", by(conditions.get("size", []))),
+        ("Ratio", f"{conditions.get('planes')} × {conditions.get('layersPerPlane')}"),
+        ("Classification", esc(conditions.get("classification", ""))),
+        ("Edits", CHANGED.get(conditions.get("edits"), "")),
+        ("Rebuilding", f"{figures(conditions.get('workBudgetMs'))} ms a frame, after "
+                       f"{figures(conditions.get('quietFrames'))} frames without an edit"),
+        ("Turned by", f"{figures(conditions.get('turnDegrees'))}°" if conditions.get("turnDegrees") else None),
+        ("Replays", f"{figures(replays)}: each frame's times are medians; worst of any single one {times(single)}"
+         if replays and replays > 1 else None),
+        ("Octree frames", f"median of {figures(conditions.get('octreeFrames'))} beside each frame"),
+    ]) + command(edit.raw)
+
+
+def page(edit):
+    sections = [
+        section("Every frame", plots.key_of_trace(edit) + figure(
+            plots.trace, edit, "Time from the edit, where there is one, to the end of drawing." + budget_words(edit)
+            + " The band below tells what skipped empty space in each frame; marks below it are edits.")
+            + plots.key_of_band(edit)),
+        section("Beside drawing", plots.key_of_parts() + figure(
+            plots.parts, edit, "What the live policy adds to each frame: the table and what it shows, pieces of "
+            "rebuilding, plan and uploads.")),
+        section("Work", work(edit)),
+        section("Compared", compared(edit)),
+        section("Slowest frames, in octree frames", worst_frames(edit)),
+        section("What is built", builds(edit)),
+        section("This run", run_facts(edit)),
+    ]
+    return document("Live editing", head(edit), sections)
