@@ -122,14 +122,6 @@ class ScriptTest(Folder):
             ("jump", False), ("jump", False), ("interpolate", True), ("interpolate", True), ("interpolate", True),
             ("random", True), ("random", False), ("random", True), ("random", False)])
 
-    def test_who_edits_all_the_time_has_no_map_built(self):
-        script = self.script({"start": "linear", "steps": [{"kind": "random", "frames": 12}]})
-        run = edit(*SMALL, "--script", script, "--quiet", 1, "--out", self.out)
-        self.assertEqual(run.returncode, 0, run.stderr)
-        report = self.report()
-        self.assertEqual(report["summary"]["hand_overs"], 0)
-        self.assertNotIn("building", {row["progress"] for row in report["rows"]})
-
     def test_structures_are_as_asked(self):
         run = edit(*SMALL, "--interpolate", "linear,angio", "--frames", 20, "--skip", "minmax-octree", "--classify",
                    "preintegrated", "--verify", "--out", self.out)

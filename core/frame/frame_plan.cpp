@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <tuple>
 
+#include "core/frame/settings_check.h"
 #include "core/transfer/preintegrated.h"
 
 namespace slabcast {
 
 namespace {
 
-constexpr int kMaxTotalLayers = 1 << 20;
 /// Layers per plane where nothing was measured: the middle of the core paper's best range (Fig. 4).
 constexpr int kUnmeasuredLayersPerPlane = 16;
 /// Above this share of occupied blocks a skip fetch per layer costs more than the few layers that
@@ -41,68 +40,8 @@ constexpr double kLayersPerFragment = 4.0;
 /// the target: they spare launching fragments, which a tiler does for less than a mark.
 constexpr int kLaunchCounts = 4;
 
-std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
-}
-
 double halfStepBelowOne(TargetFormat format) {
     return format == TargetFormat::Rgba8 ? kHalfStep8Bit : kHalfStepOfHalf;
-}
-
-Result<void> checkRange(const char* what, double value, double low, double high) {
-    if (value >= low && value <= high) {
-        return {};
-    }
-    return fail(ErrorCode::InvalidArgument, std::string(what) + " is " + number(value) +
-                                                ": give a number from " + number(low) + " to " +
-                                                number(high));
-}
-
-Result<void> check(const Settings& s) {
-    const struct {
-        const char* what;
-        std::optional<double> value;
-        double low, high;
-    } ranges[] = {
-        {"layer spacing (voxels)", s.layerSpacingVoxels, 1e-3, 1e6},
-        {"total layers", s.totalLayers, 1, kMaxTotalLayers},
-        {"planes", s.planes, 1, kMaxTotalLayers},
-        {"layers per plane", s.layersPerPlane, 1, kMaxTotalLayers},
-        {"termination opacity", s.termination, 0.0, 1.0},
-    };
-    for (const auto& range : ranges) {
-        if (range.value) {
-            if (Result<void> ok = checkRange(range.what, *range.value, range.low, range.high);
-                !ok) {
-                return ok;
-            }
-        }
-    }
-    if (s.planes && s.layersPerPlane) {
-        return fail(ErrorCode::InvalidArgument,
-                    "planes and layers per plane are both set: give one, the total "
-                    "number of layers decides the other");
-    }
-    if (s.shaded && s.classification == Classification::Preintegrated) {
-        return fail(ErrorCode::InvalidArgument,
-                    "pre-integrated classification has no shading: leave shading off, or take "
-                    "post-classification");
-    }
-    return {};
-}
-
-/// A plan skips by what was built, or not at all.
-Result<void> checkSkip(const SceneFacts& facts, const Settings& settings) {
-    const SkipStructure built = facts.skip.structure;
-    const SkipStructure asked = settings.skip.value_or(SkipStructure::None);
-    if (asked == SkipStructure::None || built == SkipStructure::None || asked == built) {
-        return {};
-    }
-    return fail(ErrorCode::InvalidArgument,
-                std::string("skip ") + name(asked) + " was asked for, but what was built is " +
-                    name(built) + ": set the look with skip options of that structure");
 }
 
 int planesFor(int total, int layersPerPlane) {
@@ -127,10 +66,10 @@ struct Planner {
                                    : settings.layerSpacingVoxels * facts.smallestVoxelEdgeMm;
         plan.lattice = {settings.lattice, total, spacing, settings.jitter};
         because("layers " + std::to_string(total),
-                "one every " + number(spacing) + " mm (" +
-                    number(spacing / facts.smallestVoxelEdgeMm) +
+                "one every " + shortNumber(spacing) + " mm (" +
+                    shortNumber(spacing / facts.smallestVoxelEdgeMm) +
                     " voxels) over the bounding sphere's diameter of " +
-                    number(2.0 * facts.sphere.radiusMm) + " mm");
+                    shortNumber(2.0 * facts.sphere.radiusMm) + " mm");
         because(std::string(name(settings.lattice)) + " lattice",
                 settings.lattice == LatticeKind::Planar
                     ? "layers of equal view depth, as in the core paper"
@@ -176,7 +115,7 @@ struct Planner {
         }
         std::string all;
         for (const RatioMeasurement& m : measurements) {
-            all += (all.empty() ? "" : ", ") + name(m.ratio) + " " + number(m.frameMs) + " ms";
+            all += (all.empty() ? "" : ", ") + name(m.ratio) + " " + shortNumber(m.frameMs) + " ms";
         }
         // Dealt out anew: what was measured may have been of another number of layers.
         const Ratio ratio = dealtOut(best->ratio.layersPerPlane, best->ratio.form);
@@ -186,7 +125,7 @@ struct Planner {
 
     /// The structure that was built, or none: asked for, or where it would not pay.
     void chooseSkip() {
-        const std::string occupied = number(100.0 * facts.occupiedFraction);
+        const std::string occupied = shortNumber(100.0 * facts.occupiedFraction);
         const SkipStructure built = facts.skip.structure;
         if (built == SkipStructure::None) {
             because("skip none", "no skip structure was built for this look");
@@ -214,7 +153,7 @@ struct Planner {
         if (settings.classification == Classification::Preintegrated) {
             return "opacity is exact, but for the table's, along whatever length the field is "
                    "linear; colour is off by at most " +
-                   number(facts.visibleColorRange * preintegratedColorError(mostDepthOf(1))) +
+                   shortNumber(facts.visibleColorRange * preintegratedColorError(mostDepthOf(1))) +
                    " (views of up to 120 degrees)";
         }
         if (!settings.shaded) {
@@ -296,7 +235,7 @@ struct Planner {
         }
         const double least = layersToSaturate();
         if (least > kGoodPart * plan.lattice.total) {
-            return "even the densest material takes " + number(least) + " of " +
+            return "even the densest material takes " + shortNumber(least) + " of " +
                    std::to_string(plan.lattice.total) + " layers to make a ray opaque";
         }
         return targetSaturates()
@@ -309,12 +248,12 @@ struct Planner {
         plan.order = settings.order.value_or(against.empty() ? BlendOrder::FrontToBack
                                                              : BlendOrder::BackToFront);
         const bool frontToBack = plan.order == BlendOrder::FrontToBack;
-        because(name(plan.order), settings.order ? "asked for"
-                                  : !against.empty()
-                                      ? against
-                                      : "a ray may be opaque after " + number(planesToSaturate()) +
-                                            " of " + std::to_string(plan.planes) +
-                                            " planes: those behind are left out");
+        because(name(plan.order),
+                settings.order ? "asked for"
+                : !against.empty()
+                    ? against
+                    : "a ray may be opaque after " + shortNumber(planesToSaturate()) + " of " +
+                          std::to_string(plan.planes) + " planes: those behind are left out");
         if (!frontToBack || !settings.termination || plan.planes == 1) {
             return;
         }
@@ -340,7 +279,7 @@ struct Planner {
         const double balanced = std::sqrt(2.0 * plan.planes * kLayersPerMark / planeCost);
         const double apart = std::ceil(std::max(balanced, planesToSaturate()));
         if (!(apart < plan.planes)) {
-            because("no marks", "a ray takes " + number(apart) + " of " +
+            because("no marks", "a ray takes " + shortNumber(apart) + " of " +
                                     std::to_string(plan.planes) + " planes to be opaque");
             return;
         }
@@ -348,7 +287,7 @@ struct Planner {
         because("marks every " + std::to_string(plan.planesPerMark) + " planes",
                 "opaque pixels are marked in depth, planes behind fail there early; no ray is "
                 "opaque before " +
-                    number(planesToSaturate()) + " planes, and " + number(balanced) +
+                    shortNumber(planesToSaturate()) + " planes, and " + shortNumber(balanced) +
                     " balance the marks' cost with that of planes drawn in vain");
     }
 
@@ -366,13 +305,13 @@ struct Planner {
         std::string lost = "rounds all of it away (below 1/510)";
         if (!eightBits) {
             lost = "keeps 11 bits of what " + std::to_string(plan.planes) +
-                   " planes gather and may lose " + number(100.0 * std::min(1.0, halfLost)) +
+                   " planes gather and may lose " + shortNumber(100.0 * std::min(1.0, halfLost)) +
                    " % of it";
         } else if (most >= kHalfStep8Bit) {
-            lost = "is off by up to " + number(100.0 * kHalfStep8Bit / most) +
+            lost = "is off by up to " + shortNumber(100.0 * kHalfStep8Bit / most) +
                    " % of it and loses all that is below 1/510";
         }
-        because("warning", "even the densest material adds only " + number(most) +
+        because("warning", "even the densest material adds only " + shortNumber(most) +
                                " per plane: " + name(plan.target) + " " + lost +
                                (eightBits ? "; --target rgba16f or fewer planes keep it"
                                           : "; fewer planes keep it"));
@@ -436,10 +375,7 @@ std::vector<Ratio> ratioCandidates(const Settings& settings, const SceneFacts& f
 
 Result<FramePlan> plan(const SceneFacts& facts, const Settings& settings, const gl::Caps& caps,
                        std::span<const RatioMeasurement> measurements) {
-    if (Result<void> ok = check(settings); !ok) {
-        return tl::unexpected(ok.error());
-    }
-    if (Result<void> ok = checkSkip(facts, settings); !ok) {
+    if (Result<void> ok = check(settings, facts); !ok) {
         return tl::unexpected(ok.error());
     }
     Planner planner{facts, settings, caps, {}};

@@ -14,21 +14,26 @@ namespace {
 
 using Clock = GridRebuild::Clock;
 
-/// Runs items of a stage from `from` on; returns the first that was not run.
+/// Runs items of a stage from `from` on; returns the first that was not run. Threads are called
+/// only where there is time for more than one item.
 std::int64_t runItems(const BuildStage& stage, std::int64_t from, Clock::time_point deadline) {
     std::atomic<std::int64_t> next{from};
-    const auto runUntilDeadline = [&](std::int64_t, std::int64_t) {
-        do {
-            const std::int64_t item = next.fetch_add(1);
-            if (item >= stage.items) {
-                return;
-            }
+    const auto runOne = [&] {
+        const std::int64_t item = next.fetch_add(1);
+        if (item < stage.items) {
             stage.run(item, item + 1);
-        } while (Clock::now() < deadline);
+        }
+        return item + 1 < stage.items;
     };
-    const std::int64_t cores = std::max(1U, std::thread::hardware_concurrency());
-    const std::int64_t threads = stage.inOrder ? 1 : std::min(cores, stage.items - from);
-    parallelFor(threads, 1, runUntilDeadline);
+    const auto runUntilDeadline = [&](std::int64_t, std::int64_t) {
+        while (Clock::now() < deadline && runOne()) {
+        }
+    };
+    if (runOne() && Clock::now() < deadline) {
+        const std::int64_t cores = std::max(1U, std::thread::hardware_concurrency());
+        parallelFor(stage.inOrder ? 1 : std::min(cores, stage.items - from - 1), 1,
+                    runUntilDeadline);
+    }
     return std::min<std::int64_t>(next, stage.items);
 }
 

@@ -27,17 +27,18 @@ bool hasStructure(const SkipOptions& options) {
 Result<void> checkServes(const LiveOptions& o) {
     if (!hasStructure(o.always) || infoOf(o.always.structure).dependsOnTransfer) {
         return fail(ErrorCode::InvalidArgument,
-                    std::string("editing with ") + name(o.always.structure) +
-                        ": it is not right under every transfer function; take bitfield-octree, "
-                        "minmax-octree or partitioned");
+                    std::string("editing needs a structure that is right under every transfer "
+                                "function, which ") +
+                        name(o.always.structure) +
+                        " is not: take bitfield-octree, minmax-octree or partitioned");
     }
     const SkipStructure settled = o.settled.structure;
     if (settled != SkipStructure::None && settled != SkipStructure::Blocks &&
         settled != SkipStructure::Proximity && settled != SkipStructure::Chebyshev) {
         return fail(ErrorCode::InvalidArgument,
-                    std::string("editing with ") + name(settled) +
-                        " after the last edit: it is not rebuilt in pieces; take proximity, "
-                        "chebyshev, blocks or none");
+                    std::string("editing needs a structure that is rebuilt in pieces when edits "
+                                "pause, which ") +
+                        name(settled) + " is not: take proximity, chebyshev, blocks or none");
     }
     return check(o.always).and_then([&] { return check(o.settled); });
 }

@@ -183,16 +183,17 @@ Result<void> editCommand(const EditOptions& options, const std::string& command)
     if (!decided) {
         return tl::unexpected(decided.error());
     }
-    if (Result<void> made = makeReportFolder(options.outputFolder); !made) {
-        return made;
-    }
     json report = reportHeader(*stage, command);
     report["conditions"] = conditionsOf(*decided, options, *script);
     std::vector<std::vector<EditRow>> replays;
     for (int replay = 0; replay < options.replays; ++replay) {
         Result<EditBench> bench = EditBench::open(*stage, options, live, script->start, *decided);
-        Result<std::vector<EditRow>> rows =
-            bench ? replayAll(*bench, *script, options, replay) : tl::unexpected(bench.error());
+        if (!bench) {
+            return tl::unexpected(bench.error());
+        }
+        Result<std::vector<EditRow>> rows = makeReportFolder(options.outputFolder).and_then([&] {
+            return replayAll(*bench, *script, options, replay);
+        });
         if (!rows) {
             return tl::unexpected(rows.error());
         }

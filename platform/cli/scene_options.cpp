@@ -64,6 +64,14 @@ std::optional<std::optional<std::array<double, 2>>> parseValueRange(const std::s
     return low && high ? std::optional(std::optional(std::array{*low, *high})) : std::nullopt;
 }
 
+Choices<int> numbers(std::initializer_list<int> values) {
+    Choices<int> words;
+    for (const int value : values) {
+        words.emplace_back(std::to_string(value), value);
+    }
+    return words;
+}
+
 /// auto, and every structure by its name.
 Choices<std::optional<SkipStructure>> skipWords() {
     Choices<std::optional<SkipStructure>> words{{"auto", std::nullopt}};
@@ -235,20 +243,23 @@ void bindStack(CLI::App& command, SceneOptions& o) {
               "material; auto goes by how soon a ray can be opaque")
         ->group(group);
     addChoice(command, "--skip", s.skip, skipWords(),
-              "how empty space is skipped; never changes the picture; auto goes by what is visible")
+              fmt::format("how empty space is skipped: {}; never changes the picture; auto goes by "
+                          "what is visible",
+                          wordsOf(skipWords(), ", ")))
+        ->type_name("NAME")
         ->group(group);
-    addNumber(command, "--skip-block", o.skip.blockEdgeVoxels, 1, 64,
+    addChoice(command, "--skip-block", o.skip.blockEdgeVoxels, numbers({1, 2, 4, 8, 16, 32, 64}),
               "edge in voxels of the skip structure's blocks, or of an octree's leaves")
         ->group(group);
     addChoice(command, "--skip-builder", o.skipBuilder,
               {{"auto", SkipBuilder::Auto}, {"cpu", SkipBuilder::Cpu}, {"gpu", SkipBuilder::Gpu}},
               "where it is built, with the same result; auto: on the GPU unless that is software")
         ->group(group);
-    addNumber(command, "--skip-bits", o.skip.bits, 8, 128,
-              "bits per node of a bitfield octree: 8, 16, 32, 64 or 128")
+    addChoice(command, "--skip-bits", o.skip.bits, numbers({8, 16, 32, 64, 128}),
+              "bits per node of a bitfield octree")
         ->group(group);
-    addNumber(command, "--partitions", o.skip.partitions, 16, 256,
-              "ranges of values that partitioned maps tell apart: 16, 32, 64, 128 or 256")
+    addChoice(command, "--partitions", o.skip.partitions, numbers({16, 32, 64, 128, 256}),
+              "ranges of values that partitioned maps tell apart")
         ->group(group);
     addChoice(command, "--separate-minimum", o.skip.separateMinimum, onOffWords(),
               "whether the least value has a bin or partition of its own")
