@@ -39,7 +39,8 @@ def volume_sections(bench, entry):
 
 def sizes_section(bench):
     drawn = figure(plots.sizes, bench, "Every structure with the same parameters: blocks or leaves of 4 voxels, "
-                   "32 bits, 64 partitions. Frames are those of ray casting, marching only.")
+                   "32 bits, 64 partitions. Memory: on the GPU, and of partitioned maps on the host. Frames are those of "
+                   "ray casting, marching only.")
     used = {row.structure for row in bench.of("sizes")}
     return section(f"Cost against size: {esc(bench.sized)}",
                    drawn and plots.key_of_structures(used) + drawn + tables.sizes(bench))
@@ -73,7 +74,7 @@ def run_facts(bench):
         ("Picture", by(conditions.get("size"))),
         ("Camera", f"{', '.join(figures(v) for v in camera)}; {figures(conditions.get('fovDegrees'))}° high"
          if isinstance(camera, list) else None),
-        ("Layers", f"every {figures(spacing)} voxel edges, {esc(conditions.get('lattice', ''))}" if spacing else None),
+        ("Layers", f"every {figures(spacing)} of the smallest voxel edge, {esc(conditions.get('lattice', ''))}" if spacing else None),
         ("Early exit at", figures(conditions.get("termination"))),
         ("Target, space", " · ".join(esc(conditions[name]) for name in ("target", "space") if conditions.get(name))),
         ("Partition budget", mebibytes(conditions.get("partitionBudgetBytes"))),

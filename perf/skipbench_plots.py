@@ -121,12 +121,10 @@ def merging(bench, volume):
                 axes.plot([row.get("partitions") for row in rows], [row.at("updateMs", "median") for row in rows],
                           "o-", color=colour, lw=1.3, ms=3.4, zorder=3)
             rebuilds = bench.of("rebuild", volume=volume, blockEdge=edge, structure="chebyshev")
-            for name, style, text in (("buildMs", "-", "rebuilt"), ("ofRangesMs", (0, (4, 3)), "of kept ranges")):
+            for name, style in (("buildMs", "-"), ("ofRangesMs", (0, (4, 3)))):
                 level = middle([row.at(name, "median") for row in rebuilds])
                 if level is not None:
                     axes.axhline(level, color=INK, lw=1.1, ls=style, zorder=2)
-                    axes.annotate(text, (1, level), xycoords=("axes fraction", "data"), xytext=(0, 2.5), ha="right",
-                                  textcoords="offset points", fontsize=7.5, color=MUTED)
             axes.set_xscale("log", base=2)
             axes.set_yscale("log")
             axes.xaxis.set_major_locator(FixedLocator(counts))
@@ -144,11 +142,19 @@ def merging(bench, volume):
 
 def key_of_transfers(bench, volume):
     names = {row.get("tf"): row.get("tfName") for row in bench.of("rebuild", volume=volume)}
-    return key([(esc(f"{tf}: {names[tf]}"), colour, "o", False, "none") for tf, colour in TRANSFERS.items()
-                if tf in names])
+    merged = [(esc(f"{tf}: {names[tf]}"), colour, "o", False, "none") for tf, colour in TRANSFERS.items() if tf in names]
+    return key([*merged, ("rebuilt in full", INK, None, False, "none"),
+                ("rebuilt of kept ranges", INK, None, False, "4 3")])
 
 
-SIZED = (("build, ms", ("buildMs", "median")), ("GPU memory, MiB", ("gpuBytes",)), ("frame, ms", ("frameMs", "median")))
+def _mebibytes(row):
+    """On the GPU, and of partitioned maps on the host; None where nothing is held."""
+    held = row.at("gpuBytes")
+    return None if held is None else (held + (row.at("hostBytes") or 0)) / 2 ** 20
+
+
+SIZED = (("build, ms", lambda row: row.at("buildMs", "median")), ("memory, MiB", _mebibytes),
+         ("frame, ms", lambda row: row.ms))
 
 
 def sizes(bench, narrow):
@@ -159,11 +165,10 @@ def sizes(bench, narrow):
         return None
     figure, grid = plt.subplots(3 if narrow else 1, 1 if narrow else 3, squeeze=False,
                                 figsize=(NARROW, 7.2) if narrow else (WIDE, 3.0))
-    for axes, (title, path) in zip(grid.flat, SIZED):
-        scale = 2 ** 20 if "MiB" in title else 1
+    for axes, (title, cost) in zip(grid.flat, SIZED):
         for name in STRUCTURES:
-            points = sorted((row.get("edge"), value / scale) for row in rows
-                            if row.structure == name and (value := row.at(*path)))
+            points = sorted((row.get("edge"), value) for row in rows
+                            if row.structure == name and (value := cost(row)))
             if points:
                 axes.plot(*zip(*points), "o-", color=COLOURS[name], lw=1.4, ms=3.4,
                           zorder=2 if name == "none" else 3)
@@ -172,8 +177,9 @@ def sizes(bench, narrow):
         axes.xaxis.set_major_locator(FixedLocator(edges))
         axes.xaxis.set_major_formatter(FuncFormatter(lambda edge, _: f"{edge:g}³"))
         axes.xaxis.set_minor_formatter(NullFormatter())
-        axes.yaxis.set_major_locator(LogLocator(10, numticks=9))
-        axes.yaxis.set_major_formatter(FuncFormatter(plain_number))
-        axes.yaxis.set_minor_locator(NullLocator())
+        low, high = axes.get_ylim()
+        _log_axis(axes.yaxis)
+        if high > 100 * low:
+            axes.yaxis.set_major_locator(LogLocator(10, numticks=9))
         axes.set_title(f"{title} (log)")
     return svg(figure, f"sizes{'-n' if narrow else ''}")

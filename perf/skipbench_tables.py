@@ -88,7 +88,7 @@ def ray_casting(bench, volume):
                       span(bench.published(first.structure, mode), lambda value: f"{value:.2f}") or MISSING]
         lines.append(cells)
     paper = bench.paper("faludi")
-    told = ("Median of a turn’s frames; below it the fastest and the slowest.")
+    told = "Median of a turn’s frames; below it the fastest and the slowest."
     if paper:
         told += (f" “Paper”: {esc(paper.get('source', ''))}, least to greatest of its datasets, on its device "
                  f"({esc(paper.get('device', ''))}); its distance map is Euclidean, of 4-voxel blocks.")
@@ -164,7 +164,7 @@ def searched(bench, volume):
                 parts.append(_heat(rows, level, edge, name))
     return parts and f'<div class="heats">{"".join(parts)}</div>' + note(
         "Ray casting, marching only, on a picture of half the edge: the least of three frames, in ms; in each cell "
-        "the best of all that its two parameters leave open. The fastest three of each structure then raced at full "
+        "the best of all that its two parameters leave open. The fastest five of each structure then raced at full "
         "size, and the winner is what the other tables use. A level is how many levels below the root a walk begins.")
 
 

@@ -312,13 +312,27 @@ TEST_F(LiveSkipTest, SameVisibleValuesRebuildNothing) {
     }
 }
 
-TEST_F(LiveSkipTest, FewerVisibleValuesKeepTheMapUntilItIsTightened) {
+TEST_F(LiveSkipTest, SomewhatFewerVisibleValuesKeepTheMapUntilItIsTightened) {
+    for (int place = 0; place < 24 * 24 * 24; ++place) {
+        const int x = place % 24;
+        scene.code({x, place / 24 % 24, place / 576}) = x < 20 ? 100 : 200;
+    }
+    options.always.blockEdgeVoxels = options.settled.blockEdgeVoxels = 2;
     LiveSkip live = started();
     const int generation = live.current().generation;
-    edit(live, 150, 255);
+    edit(live, 50, 150); // all blocks but those of the last two voxels along x
     EXPECT_EQ(live.current().generation, generation);
     settle(live);
     EXPECT_NE(live.current().generation, generation);
+    EXPECT_EQ(*live.current().lengths, freshGrid(scene, options.settled));
+    EXPECT_EQ(live.current().lengths->occupiedBlocks, 11 * 12 * 12);
+}
+
+TEST_F(LiveSkipTest, MuchFewerVisibleValuesAreServedByTheOctreeWhichSkipsMore) {
+    LiveSkip live = started();
+    edit(live, 150, 255); // the inner ball alone
+    EXPECT_EQ(live.current().options.structure, SkipStructure::BitfieldOctree);
+    settle(live);
     EXPECT_EQ(*live.current().lengths, freshGrid(scene, options.settled));
 }
 

@@ -48,6 +48,28 @@ std::vector<std::uint16_t> nextWithAlpha(const TransferTable& table) {
     return next;
 }
 
+/// of(0), of(1), ... of a function that rises with its argument, which is asked only where it may
+/// change: most codes of halves lie between two texels of a table, and an edited TF's frame waits.
+template <class Of>
+std::vector<std::uint16_t> risingValues(std::size_t count, Of of) {
+    std::vector<std::uint16_t> values(count);
+    const auto fillBetween = [&](auto& self, std::size_t first, std::size_t last) -> void {
+        if (values[first] == values[last]) {
+            std::fill(values.begin() + std::ptrdiff_t(first), values.begin() + std::ptrdiff_t(last),
+                      values[first]);
+        } else if (last - first > 1) {
+            const std::size_t middle = (first + last) / 2;
+            values[middle] = of(middle);
+            self(self, first, middle);
+            self(self, middle, last);
+        }
+    };
+    values.front() = of(0);
+    values.back() = of(count - 1);
+    fillBetween(fillBetween, 0, count - 1);
+    return values;
+}
+
 } // namespace
 
 CellVisibility cellVisibility(const TexelCodes& codes, const Texels& texels,
@@ -57,16 +79,14 @@ CellVisibility cellVisibility(const TexelCodes& codes, const Texels& texels,
     SLABCAST_EXPECTS(filterErrorSampled >= 0.0, filterErrorSampled);
     const TableReach reach{tableAxis(texels, table)};
     const std::vector<std::uint16_t> next = nextWithAlpha(table);
+    const auto firstVisible = [&](std::size_t code) {
+        return next[reach.below(double(codes.lowSampled[code]) - filterErrorSampled)];
+    };
+    const auto last = [&](std::size_t code) {
+        return reach.above(double(codes.highSampled[code]) + filterErrorSampled);
+    };
     const std::size_t count = codes.lowSampled.size();
-    CellVisibility visibility{&codes, std::vector<std::uint16_t>(count),
-                              std::vector<std::uint16_t>(count)};
-    for (std::size_t code = 0; code < count; ++code) {
-        const double low = double(codes.lowSampled[code]) - filterErrorSampled;
-        const double high = double(codes.highSampled[code]) + filterErrorSampled;
-        visibility.firstVisible[code] = next[reach.below(low)];
-        visibility.reach[code] = reach.above(high);
-    }
-    return visibility;
+    return {&codes, risingValues(count, firstVisible), risingValues(count, last)};
 }
 
 CellVisibility cellVisibilityOfAlpha(const TexelCodes& alphaCodes) {

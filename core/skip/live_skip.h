@@ -50,9 +50,9 @@ const char* name(LiveProgress progress);
 
 /// Which structure serves while a TF changes again and again. At any moment current() is exact
 /// under the last TF: the settled structure where the TF shows nothing that it was not built for,
-/// else the one that is right under any TF. The settled one is then rebuilt in pieces; a further
-/// edit drops what was begun, and so does a copy. No GL. Not thread-safe; heavy steps use all cores
-/// inside. Tested by: live_skip_test.cpp
+/// nor so much less that the other skips more, else the one that is right under any TF. The settled
+/// one is then rebuilt in pieces; a further edit drops what was begun, and so does a copy. No GL.
+/// Not thread-safe; heavy steps use all cores inside. Tested by: live_skip_test.cpp
 class LiveSkip {
 public:
     /// Builds the structure for all TFs, unless it is `present`; takes `present`, which is of the
@@ -97,7 +97,8 @@ private:
     VisibleValues shown_;                              // of now
     BuiltSkip always_;
     BuiltSkip settled_{.options = {.structure = SkipStructure::None}};
-    VisibleValues settledShown_; // what settled_ was built for
+    VisibleValues settledShown_;   // what settled_ was built for
+    double settledFraction_ = 0.0; // that always_ found occupied then
     bool settledServes_ = false;
     std::shared_ptr<const OctreeLevel> ranges_; // of the settled structure's blocks
     NotCopied<GridRebuild> rebuild_;

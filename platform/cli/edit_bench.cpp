@@ -1,5 +1,6 @@
 #include "platform/cli/edit_bench.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "core/frame/warm_up.h"
@@ -9,6 +10,9 @@
 namespace slabcast {
 
 namespace {
+
+/// Of what the last frame took to draw, for rebuilding: short frames stay short.
+constexpr double kMostOfFrame = 0.25;
 
 /// A span of time, and what follows it.
 class Stopwatch {
@@ -108,14 +112,14 @@ Result<void> EditBench::drawLive(const EditFrame& frame, double turnDegrees, Edi
         }
     }
     row.editMs = watch.lapMs();
-    row.progress = live_.work(options_.workBudgetMs);
+    row.progress = live_.work(std::min(options_.workBudgetMs, kMostOfFrame * lastDrawMs_));
     row.workMs = watch.lapMs();
     const Result<FramePlan> plan = planOf(live_, settings_);
     Result<void> done =
         plan ? policysRenderer_.prepare(live_, *plan) : tl::unexpected(plan.error());
     row.prepareMs = watch.lapMs();
     done = done.and_then([&] { return draw(policysRenderer_, live_, *plan, turnDegrees); });
-    row.drawMs = watch.lapMs();
+    row.drawMs = lastDrawMs_ = watch.lapMs();
     row.frameMs = row.editMs + row.workMs + row.prepareMs + row.drawMs;
     if (done) {
         row.structure = plan->drawsNothing ? "nothing drawn" : name(plan->skip);

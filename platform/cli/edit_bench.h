@@ -64,6 +64,7 @@ private:
     Renderer policysRenderer_, othersRenderer_;
     Settings settings_; // with the ratio decided
     SkipOptions naiveSkip_;
+    double lastDrawMs_ = 0.0; // by the policy
     gl::ColorTargets target_;
     Scene live_, octree_, naive_;
 };

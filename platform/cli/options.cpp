@@ -366,7 +366,8 @@ void bindEdit(CLI::App& command, EditOptions& o) {
         ->default_str("0")
         ->group(edits);
     addNumber(command, "--work", o.workBudgetMs, 0.0, 1e6,
-              "what a frame may spend on rebuilding the structure that --skip names")
+              "what a frame may spend on rebuilding the structure that --skip names, at most a "
+              "quarter of what the last one took to draw")
         ->type_name("MS")
         ->default_str(fmt::format("{:g}", o.workBudgetMs))
         ->group(edits);
@@ -394,17 +395,15 @@ void bindEdit(CLI::App& command, EditOptions& o) {
         ->default_str("the fastest of several, measured")
         ->group(kLayersGroup);
     command.footer(
-        "A script is {\"start\": TF, \"steps\": [STEP, ...]}, where a TF is a preset's name, a "
-        "file,\n"
-        "or what such a file holds. Every step begins with the TF that the one before it left:\n"
-        "  {\"kind\": \"pause\", \"frames\": 20}\n"
-        "  {\"kind\": \"interpolate\", \"to\": TF, \"frames\": 60, \"periods\": 1}  there and "
-        "back\n"
-        "  {\"kind\": \"opacity\", \"point\": 2, \"to\": 0.05, \"frames\": 30}    dragged\n"
-        "  {\"kind\": \"jump\", \"to\": TF, \"frames\": 15}                     then rests\n"
-        "  {\"kind\": \"random\", \"frames\": 40, \"every\": 1, \"seed\": 7}    bands of values\n"
-        "Example: does any frame of an edit take long; look at edit/report.html\n"
-        "  slabcast edit skull.nrrd --interpolate ct-bone,ct-lung --verify --out edit");
+        R"(A script is {"start": TF, "steps": [STEP, ...]}, where a TF is a preset's name, a file, or what
+such a file holds. Every step begins with the TF that the one before it left:
+  {"kind": "pause", "frames": 20}
+  {"kind": "interpolate", "to": TF, "frames": 60, "periods": 1}  there and back, or 0.5: there
+  {"kind": "opacity", "point": 2, "to": 0.05, "frames": 30}      a point's, dragged
+  {"kind": "jump", "to": TF, "frames": 15}                       at once, then nothing
+  {"kind": "random", "frames": 40, "every": 1, "seed": 7}        bands of values
+Example: does any frame of an edit take long; look at edit/report.html
+  slabcast edit skull.nrrd --interpolate ct-bone,ct-lung --verify --out edit)");
 }
 
 void bindInfo(CLI::App& command, InputOptions& o) {

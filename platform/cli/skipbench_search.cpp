@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kFinalists = 3; // of a structure
+constexpr std::size_t kFinalists = 5; // of a structure
 constexpr double kFinalsMs = 20e3;
 
 struct Tried {
@@ -80,10 +80,10 @@ Result<SkipOptions> winnerOf(SkipBench& bench, const std::vector<Tried>& finalis
     if (!rows) {
         return tl::unexpected(rows.error());
     }
-    const auto median = [](const json& row) { return row["frameMs"]["median"].get<double>(); };
     const auto best =
-        std::min_element(rows->begin(), rows->end(),
-                         [&](const json& a, const json& b) { return median(a) < median(b); });
+        std::max_element(rows->begin(), rows->end(), [](const json& a, const json& b) {
+            return a["speedup"].get<double>() < b["speedup"].get<double>();
+        });
     bench.rows.insert(bench.rows.end(), rows->begin(), rows->end());
     return structures[static_cast<std::size_t>(best - rows->begin())];
 }
