@@ -1,6 +1,6 @@
 // Leaves of octrees, and blocks: what of the volume's values meets each grown by one voxel. A
 // workgroup looks at tiles of 8^3 voxels with their margin, one after the other along x where a
-// texel holds the nodes of several. See core/skip/occupancy.h and leaf_ranges.h.
+// texel holds the nodes of several. See core/skip/occupancy.h and octree.h.
 #include "build_precision.glsl"
 #include "build_nodes.glsl"
 #include CODE_FILE

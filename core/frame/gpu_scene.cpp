@@ -134,6 +134,7 @@ Result<GLuint> GpuScene::volumeTexture(const Scene& scene, bool pre, const gl::C
 }
 
 void GpuScene::adopt(const BuiltSkip& skip, SkipTexture texture) {
+    skips_.clear();
     skips_.push_back({skip.generation, std::move(texture)});
 }
 

@@ -20,7 +20,7 @@ public:
     /// The volume's texture alone, scalars or pre-classified, for who builds from it; owned here.
     /// Fails: as update().
     Result<GLuint> volumeTexture(const Scene& scene, bool pre, const gl::Caps& caps);
-    /// The texture of a structure that was built on the GPU: none is uploaded for it.
+    /// The texture of a structure that was built on the GPU, in place of those that were held.
     void adopt(const BuiltSkip& skip, SkipTexture texture);
 
     /// Whether the textures are those of this scene, its look and this plan.

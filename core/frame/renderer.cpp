@@ -21,10 +21,15 @@ GLenum glFormat(TargetFormat format) {
     return format == TargetFormat::Rgba8 ? GL_RGBA8 : GL_RGBA16F;
 }
 
-/// A plan is for one look: its variant says how the texels are classified, lit and blended.
-bool fits(const FramePlan& plan, const Look& look) {
-    return plan.variant.classification == look.classification && plan.space == look.space &&
-           (look.shading.has_value() || !plan.variant.shaded);
+/// A plan is for one look, and for the skip structure that serves: its variant says how texels are
+/// classified, lit and blended, and what the structure's texture holds.
+bool fits(const FramePlan& plan, const Scene& scene) {
+    const Look& look = scene.look();
+    const SkipOptions& built = scene.skip().options;
+    const bool skips = plan.skip == SkipStructure::None ||
+                       (plan.skip == built.structure && plan.variant.skip == formOf(built));
+    return skips && plan.variant.classification == look.classification &&
+           plan.space == look.space && (look.shading.has_value() || !plan.variant.shaded);
 }
 
 /// To a target that is not in the space, and to an sRGB format, which encodes by itself.
@@ -114,12 +119,14 @@ Result<const gl::Program*> Renderer::State::program(const ShaderVariant& variant
 void Renderer::State::updateBoxes(const Scene& scene, double layerLengthMm) {
     // Rounded up to a power of two: views of slightly different width share their boxes.
     const double length = std::exp2(std::ceil(std::log2(layerLengthMm)));
-    if (boxesOfLook == scene.lookGeneration() && boxesOfSkip == scene.skip().generation &&
+    // A grid is of one transfer function; of an octree, each shows other nodes.
+    const int look = scene.skip().octree ? scene.lookGeneration() : 0;
+    if (boxesOfLook == look && boxesOfSkip == scene.skip().generation &&
         boxesOfLengthMm == length) {
         return;
     }
     boxes = visibleBoxesOf(scene, length);
-    boxesOfLook = scene.lookGeneration();
+    boxesOfLook = look;
     boxesOfSkip = scene.skip().generation;
     boxesOfLengthMm = length;
 }
@@ -198,10 +205,11 @@ Result<void> Renderer::prepare(const Scene& scene, const FramePlan& plan) {
         }
         return state_->textures.update(scene, plan, state_->caps);
     }
-    if (!fits(plan, scene.look())) {
-        return fail(ErrorCode::InvalidArgument,
-                    "plan and look differ in classification, shading or space: set a look for the "
-                    "settings that the plan was made from");
+    if (!fits(plan, scene)) {
+        return fail(
+            ErrorCode::InvalidArgument,
+            "plan and scene differ in classification, shading, space or skip structure: plan "
+            "anew, or set a look for the settings that the plan was made from");
     }
     const gl::StateGuard guard;
     if (Result<void> done = state_->createFixed(); !done) {
@@ -276,7 +284,8 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
     const gl::StateGuard guard;
     const auto program = state_->programs.find(plan.variant);
     SLABCAST_EXPECTS(program != state_->programs.end(), plan.variant.unroll);
-    SLABCAST_EXPECTS(state_->textures.serve(scene, plan), scene.lookGeneration());
+    SLABCAST_EXPECTS(fits(plan, scene) && state_->textures.serve(scene, plan),
+                     scene.lookGeneration());
     for (const ViewTarget& target : views) {
         const Viewport& v = target.viewport;
         if (v.width <= 0 || v.height <= 0) {

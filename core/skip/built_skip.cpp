@@ -81,11 +81,13 @@ Result<SkipData> build(const SkipSource& s, const SkipOptions& o, const CancelTo
     case SkipStructure::Partitioned:
         return buildPartitionedMaps(s.codes, binsOf(s, o), o, cancel);
     case SkipStructure::BooleanOctree:
-        return buildBooleanOctree(s.visibility, o, cancel);
+        return s.minMax != nullptr ? booleanOctree(*s.minMax, s.visibility)
+                                   : buildBooleanOctree(s.visibility, o, cancel);
     case SkipStructure::MinMaxOctree:
-        return buildMinMaxOctree(s.codes, o, cancel);
+        return s.minMax != nullptr ? *s.minMax : buildMinMaxOctree(s.codes, o, cancel);
     case SkipStructure::BitfieldOctree:
-        return buildBitfieldOctree(s.codes, binsOf(s, o), o, cancel);
+        return s.minMax != nullptr ? bitfieldOctree(*s.minMax, binsOf(s, o))
+                                   : buildBitfieldOctree(s.codes, binsOf(s, o), o, cancel);
     }
     contractBreach(__func__, "a skip structure", static_cast<double>(o.structure));
 }

@@ -1,6 +1,7 @@
 #include "core/skip/skip_structure.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace slabcast {
@@ -95,9 +96,10 @@ Result<void> check(const SkipOptions& o) {
         return fail(ErrorCode::InvalidArgument, "initial level " + std::to_string(o.initialLevel) +
                                                     ": give 0, the root, or more");
     }
-    if (o.valueRange && !((*o.valueRange)[0] < (*o.valueRange)[1])) {
+    if (o.valueRange && !((*o.valueRange)[0] < (*o.valueRange)[1] &&
+                          std::isfinite((*o.valueRange)[0]) && std::isfinite((*o.valueRange)[1]))) {
         return fail(ErrorCode::InvalidArgument,
-                    "value range of the bins: its first value must lie below its last");
+                    "value range of the bins: give two finite values, the lower one first");
     }
     return {};
 }

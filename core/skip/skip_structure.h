@@ -34,7 +34,7 @@ enum class SkipForm : std::uint8_t {
 struct SkipStructureInfo {
     SkipStructure structure;
     const char* name;
-    bool dependsOnTransfer;     // built anew, or merged, when the TF changes
+    bool dependsOnTransfer;     // built anew when the TF changes
     std::span<const int> edges; // of a block or leaf, voxels, that are offered
 };
 

@@ -1,5 +1,7 @@
 #include "platform/cli/scene_options.h"
 
+#include <cmath>
+
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -57,11 +59,15 @@ std::optional<std::optional<glm::dvec3>> parseBackground(const std::string& word
     return glm::dvec3(rgb >> 16 & 255U, rgb >> 8 & 255U, rgb & 255U) / 255.0;
 }
 
+/// Nothing where it cannot be read.
 std::optional<std::optional<std::array<double, 2>>> parseValueRange(const std::string& word) {
     const auto parts = split(word, ',');
     const auto low = parts.size() == 2 ? parseReal(parts[0]) : std::nullopt;
     const auto high = parts.size() == 2 ? parseReal(parts[1]) : std::nullopt;
-    return low && high ? std::optional(std::optional(std::array{*low, *high})) : std::nullopt;
+    if (!low || !high || !std::isfinite(*low) || !std::isfinite(*high) || !(*low < *high)) {
+        return std::nullopt;
+    }
+    return std::optional<std::array<double, 2>>({*low, *high});
 }
 
 Choices<int> numbers(std::initializer_list<int> values) {
@@ -265,11 +271,14 @@ void bindStack(CLI::App& command, SceneOptions& o) {
               "whether the least value has a bin or partition of its own")
         ->group(group);
     addParsed<std::optional<std::array<double, 2>>>(
-        command, "--value-range", o.skip.valueRange, parseValueRange, "two values, LOW,HIGH",
+        command, "--value-range", o.skip.valueRange, parseValueRange,
+        "two values, the lower one first",
         "values between which bins and partitions are laid; all of the data's unless given")
+        ->type_name("LOW,HIGH")
         ->group(group);
     addNumber(command, "--initial-level", o.skip.initialLevel, 0, 12,
               "levels from an octree's root that are left out")
+        ->type_name("0..12")
         ->group(group);
     addChoice(
         command, "--traversal", o.skip.traversal,
