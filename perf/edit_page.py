@@ -22,6 +22,11 @@ def head(edit):
     worst, naive = of_summary(edit, "worst_over_octree_frame"), of_summary(edit, "naive", "worst_over_octree_frame")
     found = [card("Worst frame", times(worst), f"of an octree frame; rebuilding all at once: {times(naive)}",
                   "skips" if worst is not None and worst <= GOAL else "")]
+    added, spread = of_summary(edit, "worst_added_over_octree_frame"), of_summary(edit, "worst_octree_frame_over_median")
+    if added is not None:
+        found.append(card("Added at worst", f"{100 * (added - 1):.2g} %", "of an octree frame, by edit, rebuilding and "
+                          f"uploads; octree frames by themselves vary up to {times(spread)} their median",
+                          "skips" if added <= GOAL else ""))
     equal = number(summary.get("frames_equal"))
     if equal is not None:
         found.append(card("From an edit to its picture", plural(int(summary.get("frames_to_correct", 0)), "frame"),
@@ -69,7 +74,8 @@ def compared(edit):
             ("naive: all rebuilt at every edit", part(part(summary, "naive"), "frame_ms"),
              part(part(summary, "naive"), "edit_frame_ms"), of_summary(edit, "naive", "worst_over_octree_frame"),
              of_summary(edit, "naive", "frames_over_budget")),
-            ("octree that was there, nothing edited", part(summary, "octree_frame_ms"), {}, None, None)):
+            ("octree that was there, nothing edited", part(summary, "octree_frame_ms"), {},
+             of_summary(edit, "worst_octree_frame_over_median"), None)):
         rows.append([name, *(figures(of_all.get(key)) for key in ("median", "p90", "max")),
                      figures(of_edits.get("median")), figures(of_edits.get("max")), times(worst), figures(over)])
     return table(["ms per frame", "median", "90 %", "worst", "with an edit: median", "with an edit: worst",

@@ -17,7 +17,8 @@ SLABCAST = None  # the program, from the command line
 SMALL = ("phantom:vessels:32", "--size", "48x40", "--layers-per-plane", "16", "--octree-frames", "1")
 KEYS = {"frame", "step", "edit", "progress", "structure", "frameMs", "parts", "octreeMs", "overOctree", "naiveMs",
         "counters"}
-SUMMARY = {"worst_over_octree_frame", "over_octree_frame", "worst_of_single_replays", "frames", "edits", "budget_ms",
+SUMMARY = {"worst_over_octree_frame", "over_octree_frame", "worst_added_over_octree_frame",
+           "worst_octree_frame_over_median", "worst_of_single_replays", "frames", "edits", "budget_ms",
            "frames_over_budget", "frame_ms", "edit_frame_ms", "edit_ms", "octree_frame_ms", "naive",
            "frames_by_structure", "hand_overs"}
 BONE = {"points": [{"value": 100, "color": [1, 1, 1], "opacity": 0}, {"value": 200, "color": [1, 0.5, 0], "opacity": 0.5}]}

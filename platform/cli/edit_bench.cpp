@@ -145,7 +145,9 @@ Result<void> EditBench::drawOctree(const EditFrame& frame, double turnDegrees, E
             times.push_back(watch.lapMs());
         }
     }
-    row.octreeMs = summarise(times).median;
+    const FrameTimes summary = summarise(std::move(times));
+    row.octreeMs = summary.median;
+    row.octreeWorstMs = summary.max;
     return done;
 }
 

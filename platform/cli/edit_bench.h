@@ -21,7 +21,8 @@ struct EditRow {
     double prepareMs = 0.0; // plan and uploads
     double drawMs = 0.0;
     double octreeMs = 0.0; // the same picture by an octree that was there, nothing else being done
-    double naiveMs = 0.0;  // the same picture, the map being built anew at every edit
+    double octreeWorstMs = 0.0; // of the frames of which that is the median
+    double naiveMs = 0.0;       // the same picture, the map being built anew at every edit
     Result<WorkCounters> counters = tl::unexpected(Error{});
     std::optional<bool> equal; // to a picture from scratch, where that was asked for
 };

@@ -54,7 +54,7 @@ std::vector<EditRow> mediansOf(const std::vector<std::vector<EditRow>>& replays)
     for (std::size_t k = 0; k < rows.size(); ++k) {
         for (double EditRow::*time :
              {&EditRow::frameMs, &EditRow::editMs, &EditRow::workMs, &EditRow::prepareMs,
-              &EditRow::drawMs, &EditRow::octreeMs, &EditRow::naiveMs}) {
+              &EditRow::drawMs, &EditRow::octreeMs, &EditRow::octreeWorstMs, &EditRow::naiveMs}) {
             std::vector<double> times;
             for (const std::vector<EditRow>& replay : replays) {
                 times.push_back(replay[k].*time);
@@ -93,6 +93,7 @@ json toJson(const EditRow& row, std::size_t index) {
                      {"prepareMs", row.prepareMs},
                      {"drawMs", row.drawMs}}},
                    {"octreeMs", row.octreeMs},
+                   {"octreeWorstMs", row.octreeWorstMs},
                    {"overOctree", row.frameMs / row.octreeMs},
                    {"naiveMs", row.naiveMs},
                    {"counters", toJson(row.counters)}};
@@ -111,6 +112,12 @@ json summaryOf(const std::vector<EditRow>& rows, const EditOptions& options) {
         summarise(numbersOf(rows, [](const EditRow& row) { return row.frameMs / row.octreeMs; }));
     const FrameTimes naiveRatios =
         summarise(numbersOf(rows, [](const EditRow& row) { return row.naiveMs / row.octreeMs; }));
+    // What the policy adds, apart from how long frames take on their own; and how far those vary.
+    const FrameTimes added = summarise(numbersOf(rows, [](const EditRow& row) {
+        return 1.0 + (row.editMs + row.workMs + row.prepareMs) / row.octreeMs;
+    }));
+    const FrameTimes spread = summarise(
+        numbersOf(rows, [](const EditRow& row) { return row.octreeWorstMs / row.octreeMs; }));
     const FrameTimes octree = summarise(numbersOf(rows, octreeMs));
     const double budget = options.budgetMs.value_or(kBudgetOverOctree * octree.median);
     std::map<std::string, int> structures;
@@ -119,6 +126,8 @@ json summaryOf(const std::vector<EditRow>& rows, const EditOptions& options) {
     }
     json summary = {{"worst_over_octree_frame", ratios.max},
                     {"over_octree_frame", toJson(ratios)},
+                    {"worst_added_over_octree_frame", added.max},
+                    {"worst_octree_frame_over_median", spread.max},
                     {"frames_over_1.5_octree_frames",
                      std::count_if(rows.begin(), rows.end(),
                                    [](const EditRow& row) {
