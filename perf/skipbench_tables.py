@@ -179,14 +179,14 @@ def generation(bench, volume):
     for row in bench.of("structures", volume=volume):
         if row.get("refused"):
             refused = f"<b class=fail>refused</b><small>{esc(row.get('refused'))}</small>"
-            lines.append([row.name, esc(row.parameters), refused, *[MISSING] * 6])
+            lines.append([row.name, esc(row.parameters), refused, *[MISSING] * 5])
             continue
         gpu, host, occupied = row.at("gpuBytes"), row.at("hostBytes"), row.at("occupiedFraction")
-        built, on_gpu, updated = (row.at(name, "median") for name in ("buildMs", "gpuBuildMs", "updateMs"))
-        lines.append([row.name, esc(row.parameters), figures(built), figures(on_gpu), figures(updated), mib(gpu),
+        built, updated = (row.at(name, "median") for name in ("buildMs", "updateMs"))
+        lines.append([row.name, esc(row.parameters), figures(built), figures(updated), mib(gpu),
                       f"{100 * gpu / texels:.2g} %" if gpu and texels else MISSING, mib(host) if host else MISSING,
                       f"{100 * occupied:.3g} %" if occupied is not None else MISSING])
-    head = ["structure", "parameters", "build, ms", "on the GPU, ms", "another TF, ms", "GPU memory",
+    head = ["structure", "parameters", "build, ms", "another TF, ms", "GPU memory",
             "of the volume’s", "host memory", "occupied"]
     told = f"Medians of builds in turn, from codes that all share{f' ({figures(codes)} ms, once)' if codes else ''}. "
     ours = [row and row.at("buildMs", "median") for row in (

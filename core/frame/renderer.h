@@ -82,10 +82,9 @@ public:
 
     /// Brings textures and shaders up to date with scene and plan. Nothing is done for what is
     /// there already; textures that the plan does not use are released (all, where it draws
-    /// nothing), compiled shaders are kept.
-    /// Restores the GL state (gl::StateGuard).
-    /// Fails: InvalidArgument (the plan is not for the scene's look), DeviceOutOfMemory,
-    /// VolumeTooLarge, ShaderCompile.
+    /// nothing; while the scene is edited, what the next TF may need stays), compiled shaders are
+    /// kept. Restores the GL state (gl::StateGuard). Fails: InvalidArgument (the plan is not for
+    /// the scene's look), DeviceOutOfMemory, VolumeTooLarge, ShaderCompile.
     Result<void> prepare(const Scene& scene, const FramePlan& plan);
 
     /// Blends the volume over what each target holds, as premultiplied colour. One instanced draw

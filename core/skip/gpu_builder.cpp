@@ -185,8 +185,7 @@ std::int64_t partitionBytes(glm::ivec3 dims, const SkipOptions& options) {
 }
 
 int octreeLevels(glm::ivec3 dims, const SkipOptions& options) {
-    return std::max(1,
-                    levelsToRoot(blocksOf(dims, options.blockEdgeVoxels)) - options.initialLevel);
+    return keptLevels(blocksOf(dims, options.blockEdgeVoxels), options.initialLevel);
 }
 
 } // namespace slabcast

@@ -65,8 +65,9 @@ public:
     /// O(blocks x partitions).
     void edit(CellVisibility visibility);
 
-    /// Once a frame: rebuilds for about `budgetMs`, at most one item longer, an item being a slice
-    /// of blocks. Nothing at 0; else one item at least.
+    /// Once a frame: rebuilds for about `budgetMs`, and one item per core longer at most, an item
+    /// being a slice of blocks. Nothing at 0; else one item at least. The call that begins also
+    /// makes room for the grid, at the pace of memory: O(blocks).
     LiveProgress work(double budgetMs);
 
     /// Of each structure that is used, as it is when that one serves, whether or not it is right

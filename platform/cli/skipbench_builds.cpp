@@ -24,7 +24,6 @@ json rowOf(const Builds& builds, const SkipOptions& options, json row) {
         return row;
     }
     row.update({{"buildMs", toJson(summarise(builds.ms))},
-                {"gpuBuildMs", nullptr},
                 {"updateMs", infoOf(options.structure).dependsOnTransfer
                                  ? json()
                                  : toJson(summarise(builds.updateMs))},
