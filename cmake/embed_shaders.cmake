@@ -1,5 +1,5 @@
 # Writes OUT, a C++ source that defines slabcast::shaderTexts(): file name -> text of every file in SHADERS.
-set(text "// Generated from gles_shaders/. Do not edit.\n#include \"core/frame/shader_text.h\"\n\n")
+set(text "// Generated from gles_shaders/. Do not edit.\n#include \"core/gl/shader_text.h\"\n\n")
 string(APPEND text "namespace slabcast {\n\nconst std::map<std::string, std::string>& shaderTexts() {\n")
 string(APPEND text "    static const std::map<std::string, std::string> texts = {\n")
 foreach(shader IN LISTS SHADERS)

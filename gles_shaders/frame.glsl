@@ -28,10 +28,11 @@ layout(std140) uniform FrameBlock {
     ivec4 counts;        // first plane, layers per plane, planes per outline
     ivec4 skipBlocks;    // xyz: number of blocks or leaves - 1; w: levels that a walk through an
                          // octree goes up after a free node
-    ivec4 octree;        // mip level of the initial nodes; nodes per texel: log2, less one;
-                         // bits per node
+    ivec4 octree;        // level of the initial nodes, from the leaves; nodes per texel, log2;
+                         // fold, see skip_levels.glsl; bits per node
     uvec4 nodeTest;      // what of a node's bits or codes the transfer function makes visible
     ivec4 jitter;        // xy: the viewport's corner in pixels; z: 1 where rays are jittered
+    ivec4 octreeLevels[16]; // x: number of the level's first texel in the texture
 };
 #define firstPlane counts.x
 #define layersPerPlane counts.y

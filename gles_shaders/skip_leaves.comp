@@ -3,8 +3,9 @@
 // texel holds the nodes of several. See core/skip/occupancy.h and octree.h.
 #include "build_precision.glsl"
 #include "build_nodes.glsl"
+#include "build_levels.glsl"
 #include CODE_FILE
-layout(local_size_x = 128) in;
+layout(local_size_x = THREADS) in;
 #if !OF_CODES
 layout(binding = 1) uniform usampler2D rangeOfCode; // 256 wide
 #endif
@@ -14,9 +15,11 @@ layout(std430, binding = 0) writeonly buffer Found { uint anyOccupied; };
 #endif
 uniform ivec3 dims;
 uniform ivec3 leaves;
+uniform ivec3 texels;
+uniform ivec4 address;
 
-const int kThreads = 128;
-const int kTile = 8;                         // voxels along each edge
+// Voxels along each edge of a tile: the longest leaf that one makes.
+const int kTile = TILE_VOXELS;
 const int kLeaves = kTile / EDGE;            // the same in leaves
 const int kPerTile = min(kLeaves, kPerTexel); // nodes that a tile gives to a texel
 const int kTiles = kPerTexel / kPerTile;
@@ -53,7 +56,7 @@ uint rangeAt(ivec3 voxel) {
 }
 
 void loadVoxels(ivec3 tile) {
-    for (int i = int(gl_LocalInvocationIndex); i < kBehind; i += kThreads) {
+    for (int i = int(gl_LocalInvocationIndex); i < kBehind; i += THREADS) {
         ranges[i] = rangeAt(tile * kTile - 2 + position(i, kVoxels, kVoxels));
     }
     barrier();
@@ -61,7 +64,7 @@ void loadVoxels(ivec3 tile) {
 
 /// Marks the cells that are visible: whose first visible table texel is within reach.
 void makeCells() {
-    for (int i = int(gl_LocalInvocationIndex); i < kSide * kSide * kSide; i += kThreads) {
+    for (int i = int(gl_LocalInvocationIndex); i < kSide * kSide * kSide; i += THREADS) {
         ivec3 cell = position(i, kSide, kSide);
         int at = (cell.z * kVoxels + cell.y) * kVoxels + cell.x;
         uint range = kNoRange;
@@ -83,14 +86,14 @@ uint folded(int first, int stride) {
 }
 
 void foldAlongX() {
-    for (int i = int(gl_LocalInvocationIndex); i < kLeaves * kSide * kSide; i += kThreads) {
+    for (int i = int(gl_LocalInvocationIndex); i < kLeaves * kSide * kSide; i += THREADS) {
         ranges[kTo + i] = folded(kFrom + i / kLeaves * kSide + i % kLeaves * EDGE, 1);
     }
     barrier();
 }
 
 void foldAlongY() {
-    for (int i = int(gl_LocalInvocationIndex); i < kLeaves * kLeaves * kSide; i += kThreads) {
+    for (int i = int(gl_LocalInvocationIndex); i < kLeaves * kLeaves * kSide; i += THREADS) {
         ivec3 at = position(i, kLeaves, kLeaves);
         int first = (at.z * kSide + at.y * EDGE) * kLeaves + at.x;
         ranges[kFrom + i] = folded(kTo + first, kLeaves);
@@ -120,7 +123,7 @@ void main() {
             foldAlongY();
         }
         for (int i = int(gl_LocalInvocationIndex); i < kTexels.x * kTexels.y * kTexels.z;
-             i += kThreads) {
+             i += THREADS) {
             ivec3 at = position(i, kTexels.x, kTexels.y);
             texel = t == 0 ? uvec4(0) : texel;
             for (int n = 0; n < kPerTile; ++n) {
@@ -129,8 +132,9 @@ void main() {
                 uvec4 node = exists ? nodeAt(inTile) : emptyNode();
                 texel |= node << (uint(t * kPerTile + n) * uint(BITS & 31));
             }
-            if (t == kTiles - 1) {
-                imageStore(nodes, group * kTexels + at, texel);
+            ivec3 place = group * kTexels + at;
+            if (t == kTiles - 1 && all(lessThan(place, texels))) {
+                imageStore(nodes, texelOfLevel(place, address), texel);
 #if OCCUPIED
                 if (texel.x != 0u) {
                     anyOccupied = 1u;

@@ -1,19 +1,27 @@
 // A level of an octree from the one below: a node holds what its eight children hold. An invocation
-// writes a texel; the levels are padded so that each of its children exists.
+// writes a texel. Beyond the last children there is nothing.
 #include "build_precision.glsl"
 #include "build_nodes.glsl"
+#include "build_levels.glsl"
 layout(local_size_x = 4, local_size_y = 8, local_size_z = 4) in;
 layout(binding = 0) uniform usampler3D children;
 layout(NODE_FORMAT, binding = 0) writeonly uniform uimage3D nodes;
 uniform ivec3 texels;
-uniform int childLevel;
+uniform ivec4 address;
+uniform ivec3 childTexels;
+uniform ivec4 childAddress;
+
+uvec4 childAt(ivec3 at) {
+    return all(lessThan(at, childTexels))
+               ? texelFetch(children, texelOfLevel(at, childAddress), 0)
+               : emptyNode(); // narrow nodes, of which a texel holds several, are empty as zeros
+}
 
 /// Four texels of children side by side in y and z.
 uvec4 joinedColumn(ivec3 first) {
-    uvec4 node = texelFetch(children, first, childLevel);
+    uvec4 node = childAt(first);
     for (int i = 1; i < 4; ++i) {
-        ivec3 at = first + ivec3(0, i & 1, i >> 1);
-        node = joinedNodes(node, texelFetch(children, at, childLevel));
+        node = joinedNodes(node, childAt(first + ivec3(0, i & 1, i >> 1)));
     }
     return node;
 }
@@ -38,5 +46,5 @@ void main() {
     uvec4 node = kPerTexel == 1
                      ? joinedNodes(left, right)
                      : uvec4(joinedPairs(left.x) | joinedPairs(right.x) << 16, 0, 0, 0);
-    imageStore(nodes, at, node);
+    imageStore(nodes, texelOfLevel(at, address), node);
 }

@@ -137,21 +137,34 @@ protected:
         return all[(test + test / 4) % all.size()];
     }
 
-    /// What the GPU has built is what an upload of the CPU's makes, padding included.
+    /// All texels of all levels, with what fills up their rows.
+    void expectSameTexels(const SkipTexture& built, const SkipTexture& uploaded,
+                          const SkipLayout& layout) {
+        const SkipLevel& last = layout.levels.back();
+        const std::int64_t used =
+            last.first + std::int64_t(last.texels.x) * last.texels.y * last.texels.z;
+        const auto words = [&](const SkipTexture& texture) {
+            std::vector<std::uint32_t> all = downloadTexels(texture, layout).value();
+            EXPECT_GE(std::int64_t(all.size()), used * layout.wordsPerTexel());
+            all.resize(used * layout.wordsPerTexel());
+            return all;
+        };
+        EXPECT_EQ(words(built), words(uploaded));
+    }
+
+    /// What the GPU has built is what an upload of the CPU's makes.
     void expectSame(const Result<SkipTexture>& built, const FreeLengths& expected) {
         ASSERT_TRUE(built.has_value()) << built.error().detail;
         const SkipTexture uploaded = uploadFreeLengths(expected, caps()).value();
         EXPECT_EQ(built->bytes, uploaded.bytes);
         EXPECT_EQ(gpuBytes(expected), uploaded.bytes);
-        const auto download = [&](const SkipTexture& texture, glm::ivec3 blocks) {
-            return downloadFreeLengths(texture, blocks, expected.blockEdgeVoxels,
-                                       expected.quantumMm)
-                .value();
-        };
-        EXPECT_EQ(download(uploaded, expected.blocks), expected);
-        EXPECT_EQ(download(*built, expected.blocks), expected);
-        const glm::ivec3 padded = freeLengthLayout(expected.blocks).valuesOf(0);
-        EXPECT_EQ(download(*built, padded), download(uploaded, padded));
+        for (const SkipTexture* texture : {&uploaded, &*built}) {
+            EXPECT_EQ(downloadFreeLengths(*texture, expected.blocks, expected.blockEdgeVoxels,
+                                          expected.quantumMm)
+                          .value(),
+                      expected);
+        }
+        expectSameTexels(*built, uploaded, freeLengthLayout(expected.blocks));
     }
 
     void expectSame(const Result<SkipTexture>& built, const Octree& expected) {
@@ -160,16 +173,14 @@ protected:
         EXPECT_EQ(built->bytes, uploaded.bytes);
         EXPECT_EQ(gpuBytes(expected), uploaded.bytes);
         const int levels = int(expected.levels.size());
-        const auto download = [&](const SkipTexture& texture, glm::ivec3 leaves) {
-            return downloadOctree(texture, expected.content, expected.bitsPerNode,
-                                  expected.leafEdgeVoxels, leaves, levels)
-                .value();
-        };
         const glm::ivec3 leaves = expected.levels.front().nodes;
-        EXPECT_EQ(download(uploaded, leaves), expected);
-        EXPECT_EQ(download(*built, leaves), expected);
-        const glm::ivec3 padded = octreeLayout(leaves, levels, expected.bitsPerNode).valuesOf(0);
-        EXPECT_EQ(download(*built, padded), download(uploaded, padded));
+        for (const SkipTexture* texture : {&uploaded, &*built}) {
+            EXPECT_EQ(downloadOctree(*texture, expected.content, expected.bitsPerNode,
+                                     expected.leafEdgeVoxels, leaves, levels)
+                          .value(),
+                      expected);
+        }
+        expectSameTexels(*built, uploaded, octreeLayout(leaves, levels, expected.bitsPerNode));
     }
 
     void checkFreeLengths(const BuildScene& s, SkipStructure structure, int edge) {
@@ -265,6 +276,21 @@ TEST_F(GpuBuilderGl, OctreesAreTheCpus) {
             const int bits = structure == SkipStructure::BooleanOctree ? 8 : 32;
             checkOctree(*scene, structure, edge, bits, edge == 4);
         }
+    }
+}
+
+// Odd at every level, flat, and thin along each axis: where levels end is where they are joined.
+TEST_F(GpuBuilderGl, OctreesOfOddAndFlatVolumesAreTheCpus) {
+    Random random(17);
+    for (const glm::ivec3 dims :
+         {glm::ivec3(66, 65, 67), {131, 130, 5}, {1, 129, 33}, {260, 3, 2}}) {
+        SCOPED_TRACE(dims.x);
+        const auto scene = sceneOf(randomVolume(random, dims), TexelFormat::R8, random);
+        for (const int bits : {8, 32, 128}) {
+            checkOctree(*scene, SkipStructure::BitfieldOctree, 2, bits, 0);
+        }
+        checkOctree(*scene, SkipStructure::BooleanOctree, 16, 8, 0);
+        checkOctree(*scene, SkipStructure::MinMaxOctree, 4, 32, 0);
     }
 }
 
@@ -426,6 +452,26 @@ TEST_F(GpuBuilderGl, LeavesTheStateAsItWas) {
     gl::ActiveTexture(GL_TEXTURE0);
 }
 
+// In place of what the texture held before, slice by slice.
+TEST_F(GpuBuilderGl, FreeLengthsAreUploadedInSeveralGoes) {
+    Random random(29);
+    const auto randomLengths = [&] {
+        FreeLengths lengths{.blocks = {9, 5, 7}};
+        for (int i = 0; i < 9 * 5 * 7; ++i) {
+            lengths.counts.push_back(std::uint8_t(between(random, 0, 255)));
+        }
+        lengths.occupiedBlocks = std::count(lengths.counts.begin(), lengths.counts.end(), 0);
+        return lengths;
+    };
+    const SkipTexture texture = uploadFreeLengths(randomLengths(), caps()).value();
+    const FreeLengths other = randomLengths();
+    EXPECT_EQ(slicesWithin(3 * 5 * 4 * 3 - 1, other.blocks), 2); // of 3 x 5 texels
+    for (const auto& [begin, end] : {std::pair(0, 3), {3, 4}, {4, 7}}) {
+        ASSERT_TRUE(uploadSlices(texture, other, begin, end).has_value());
+    }
+    EXPECT_EQ(downloadFreeLengths(texture, other.blocks, other.blockEdgeVoxels).value(), other);
+}
+
 TEST_F(GpuBuilderGl, RefusesWhatDoesNotFit) {
     const auto scene = randomScene(500, TexelFormat::R8);
     const ValueBins bins = valueBins(scene->codes, codeRange(scene->codes), 16, false);
@@ -441,14 +487,24 @@ TEST_F(GpuBuilderGl, RefusesWhatDoesNotFit) {
                   partitionBytes(scene->texels.dims, {.blockEdgeVoxels = 1, .partitions = 16}))),
               std::string::npos)
         << over.error().detail;
+    EXPECT_NE(over.error().detail.find("larger budget"), std::string::npos);
     gl::Caps narrow = caps();
+    narrow.maxStorageBlockBytes = 15;
+    const Result<GpuPartitions> beyond = GpuSkipBuilder::create(narrow)->partitions(
+        scene->voxels, bins,
+        {.structure = SkipStructure::Partitioned, .blockEdgeVoxels = 1, .partitions = 16});
+    ASSERT_FALSE(beyond.has_value());
+    EXPECT_NE(beyond.error().detail.find("storage block"), std::string::npos);
+    EXPECT_EQ(beyond.error().detail.find("budget"), std::string::npos);
     narrow.maxTexture3DSize = 1;
     EXPECT_EQ(
         uploadFreeLengths({.blocks = {9, 1, 1}, .counts = std::vector<std::uint8_t>(9)}, narrow)
             .error()
             .code,
         ErrorCode::VolumeTooLarge);
-    narrow.maxComputeSharedBytes = 8192;
+    narrow.maxComputeSharedBytes = leavesSharedBytes();
+    EXPECT_TRUE(GpuSkipBuilder::create(narrow).has_value());
+    --narrow.maxComputeSharedBytes;
     EXPECT_EQ(GpuSkipBuilder::create(narrow).error().code, ErrorCode::DeviceUnsupported);
 }
 

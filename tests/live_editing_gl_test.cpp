@@ -13,20 +13,30 @@ constexpr glm::ivec2 kSmall(48, 36);
 constexpr double kOneItem = 1e-6; // ms: less than any item takes
 constexpr double kNoLimit = 1e9;
 
-/// What the driver was given since the last reset: textures of voxels or skipping, and programs.
+/// What the driver was given since: textures of voxels or skipping, words of the latter, programs.
 struct Calls {
     static inline int volumes = 0, programs = 0;
+    static inline std::int64_t wordBytes = 0;
     static inline decltype(gl::TexStorage3D) storage3d = nullptr;
+    static inline decltype(gl::TexSubImage3D) subImage3d = nullptr;
     static inline decltype(gl::LinkProgram) link = nullptr;
 
     Calls() {
         volumes = programs = 0;
+        wordBytes = 0;
         storage3d = gl::TexStorage3D;
+        subImage3d = gl::TexSubImage3D;
         link = gl::LinkProgram;
         gl::TexStorage3D = [](GLenum target, GLsizei levels, GLenum format, GLsizei w, GLsizei h,
                               GLsizei d) {
             ++volumes;
             storage3d(target, levels, format, w, h, d);
+        };
+        gl::TexSubImage3D = [](GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei w,
+                               GLsizei h, GLsizei d, GLenum format, GLenum type,
+                               const void* texels) {
+            wordBytes += type == GL_UNSIGNED_INT ? std::int64_t(4) * w * h * d : 0;
+            subImage3d(target, level, x, y, z, w, h, d, format, type, texels);
         };
         gl::LinkProgram = [](GLuint program) {
             ++programs;
@@ -35,6 +45,7 @@ struct Calls {
     }
     ~Calls() {
         gl::TexStorage3D = storage3d;
+        gl::TexSubImage3D = subImage3d;
         gl::LinkProgram = link;
     }
     Calls(const Calls&) = delete;
@@ -171,7 +182,41 @@ TEST_F(LiveEditingTest, OnlyWhatChangedIsUploaded) {
     EXPECT_EQ(scene.work(kNoLimit), LiveProgress::Swapped);
     draw(scene);
     EXPECT_EQ(Calls::volumes, 1) << "the new map";
-    EXPECT_EQ(renderer().gpuMemory().skipBytes, bytes) << "in place of the old one";
+    const std::int64_t withSpare = renderer().gpuMemory().skipBytes;
+    EXPECT_EQ(withSpare, bytes + gpuBytes(scene.skip())) << "the old one is kept for the next";
+    ASSERT_TRUE(scene.edit(band(200.0, 3000.0)).has_value());
+    EXPECT_EQ(scene.work(kNoLimit), LiveProgress::Swapped);
+    draw(scene);
+    EXPECT_EQ(renderer().gpuMemory().skipBytes, withSpare) << "in place of the spare one";
+    scene.stopEditing();
+    draw(scene);
+    EXPECT_EQ(renderer().gpuMemory().skipBytes, gpuBytes(scene.skip())) << "which then goes";
+}
+
+TEST_F(LiveEditingTest, ALargeMapIsUploadedAShareAFrame) {
+    const Volume ramp =
+        makeVolume({130, 120, 110}, VoxelType::U8, [](glm::ivec3 v) { return v.x; });
+    const SkipOptions fine{.blockEdgeVoxels = 1};
+    Scene scene = makeScene(ramp, {.tf = band(20.0, 90.0)}, fine);
+    ASSERT_TRUE(scene.startEditing({.settled = fine, .quietFrames = 0}).has_value());
+    draw(scene);
+    ASSERT_TRUE(scene.edit(band(20.0, 120.0)).has_value());
+    std::int64_t uploaded = 0;
+    int frames = 0;
+    for (LiveProgress progress{}; progress != LiveProgress::Swapped; ++frames) {
+        ASSERT_LT(frames, 4);
+        const Calls calls;
+        progress = scene.work(kNoLimit);
+        draw(scene);
+        EXPECT_EQ(progress == LiveProgress::Swapped,
+                  planOf(scene).skip == SkipStructure::Proximity);
+        EXPECT_LE(Calls::wordBytes, kUploadBytesPerFrame);
+        uploaded += Calls::wordBytes;
+    }
+    EXPECT_EQ(frames, 2);
+    EXPECT_EQ(uploaded, gpuBytes(scene.skip()));
+    const Picture picture = draw(scene);
+    EXPECT_EQ(differingPixels(picture, fromScratch(scene)), 0);
 }
 
 TEST_F(LiveEditingTest, ATransferFunctionThatShowsNothingKeepsTheTextures) {

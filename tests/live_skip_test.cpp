@@ -70,15 +70,14 @@ FreeLengths freshGrid(const SkipScene& scene, const SkipOptions& options) {
 bool isSafe(const SkipScene& scene, const BuiltSkip& skip) {
     const int edge = skip.options.blockEdgeVoxels;
     if (skip.octree) {
-        const Occupancy occupancy = *occupiedBlocks(scene.visibility(), edge);
+        const FreeLengths blocks = *buildBlocks(scene.visibility(), edge);
         for (int level = 0; level <= skip.octree->coarsest(); ++level) {
             std::size_t place = 0;
-            for (int z = 0; z < occupancy.blocks.z; ++z) {
-                for (int y = 0; y < occupancy.blocks.y; ++y) {
-                    for (int x = 0; x < occupancy.blocks.x; ++x, ++place) {
+            for (int z = 0; z < blocks.blocks.z; ++z) {
+                for (int y = 0; y < blocks.blocks.y; ++y) {
+                    for (int x = 0; x < blocks.blocks.x; ++x, ++place) {
                         const auto* node = skip.octree->node(level, glm::ivec3(x, y, z) >> level);
-                        if (occupancy.occupied[place] != 0 &&
-                            isFree(*skip.octree, node, skip.test)) {
+                        if (blocks.counts[place] == 0 && isFree(*skip.octree, node, skip.test)) {
                             return false;
                         }
                     }
@@ -386,6 +385,44 @@ TEST_F(LiveSkipTest, NoBudgetIsTooSmallToFinish) {
         ASSERT_LT(++calls, 200); // 6 slices and rows, of 4 stages, one for the count of blocks
     }
     EXPECT_GT(calls, 8) << "in pieces";
+    EXPECT_EQ(*live.current().lengths, freshGrid(scene, options.settled));
+}
+
+TEST_F(LiveSkipTest, AMapOfMoreThanAFramesShareIsUploadedBeforeItServes) {
+    options.settled.blockEdgeVoxels = 1;
+    scene = constantScene({104, 104, 104}, 200, bandTable(kTableSize, 0, 100));
+    scene.code({50, 50, 50}) = 50;
+    LiveSkip live = started();
+    ASSERT_GT(gpuBytes(live.settled()), kUploadBytesPerFrame);
+    ASSERT_LE(gpuBytes(live.settled()), 2 * kUploadBytesPerFrame);
+    const auto workToRest = [&] {
+        for (int frame = 0; frame < options.quietFrames; ++frame) {
+            live.work(kAll);
+        }
+        return live.work(kAll);
+    };
+    edit(live, 0, 199);
+    EXPECT_EQ(workToRest(), LiveProgress::Incoming);
+    EXPECT_TRUE(live.incoming().exists());
+    EXPECT_FALSE(live.isSettled());
+    edit(live, 150, 199);
+    EXPECT_FALSE(live.incoming().exists()) << "of another transfer function";
+    EXPECT_EQ(workToRest(), LiveProgress::Incoming);
+    EXPECT_EQ(live.work(0.0), LiveProgress::Waiting) << "no budget, no work";
+    const int generation = live.incoming().generation;
+    EXPECT_EQ(live.work(kAll), LiveProgress::Swapped);
+    EXPECT_EQ(live.current().generation, generation);
+    EXPECT_FALSE(live.incoming().exists());
+    EXPECT_EQ(*live.current().lengths, freshGrid(scene, options.settled));
+}
+
+TEST_F(LiveSkipTest, AMapOfAWiderTransferFunctionServesUntilItIsTightened) {
+    const BuiltSkip wide = builtNow(scene, options.settled);
+    scene.table = bandTable(kTableSize, 150, 255);
+    LiveSkip live = *LiveSkip::start(sourceOf(scene), options, scene.visibility(), wide);
+    EXPECT_EQ(live.current().generation, wide.generation);
+    EXPECT_FALSE(live.isSettled());
+    settle(live);
     EXPECT_EQ(*live.current().lengths, freshGrid(scene, options.settled));
 }
 

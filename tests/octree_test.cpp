@@ -10,26 +10,15 @@
 #include "core/skip/boolean_octree.h"
 #include "core/skip/minmax_octree.h"
 #include "tests/support/octree_look.h"
-#include "tests/support/skip_scene.h"
+#include "tests/support/skip_blocks.h"
 
 namespace slabcast {
 namespace {
 
+using test::forBox;
 using test::lookAt;
 using test::OctreeLook;
 using test::SkipScene;
-
-/// Calls visit(p) for all p with first <= p < end.
-template <class Visit>
-void forBox(glm::ivec3 first, glm::ivec3 end, Visit visit) {
-    for (int z = first.z; z < end.z; ++z) {
-        for (int y = first.y; y < end.y; ++y) {
-            for (int x = first.x; x < end.x; ++x) {
-                visit(glm::ivec3(x, y, z));
-            }
-        }
-    }
-}
 
 /// Up to three visible bands, of values that voxels have or that lie between, in a table with a
 /// texel per value, or more or fewer.
@@ -47,18 +36,8 @@ TransferTable randomTable() {
     return table;
 }
 
-/// A few odd voxels in an even background: some free space, bands between voxels.
 SkipScene randomScene(int largestDim) {
-    const auto dim = rc::gen::inRange(1, largestDim);
-    const glm::ivec3 dims(*dim, *dim, *dim);
-    const auto code = rc::gen::inRange(0, 256);
-    SkipScene scene = test::constantScene(dims, std::uint16_t(*code), randomTable());
-    const auto odd = *rc::gen::container<std::vector<std::pair<int, int>>>(
-        rc::gen::pair(rc::gen::inRange(0, int(scene.codes.codes.size())), code));
-    for (const auto& [voxel, value] : odd) {
-        scene.codes.codes[voxel] = std::uint16_t(value);
-    }
-    return scene;
+    return test::oddVoxels(largestDim, *rc::gen::inRange(0, 256), randomTable());
 }
 
 SkipOptions randomOptions() {
@@ -131,41 +110,27 @@ struct Contents {
     std::array<std::uint32_t, 4> bits{};
 };
 
-/// All cells against all nodes of one edge, half cells at the border (-1 and dims - 1) included,
-/// from their intervals alone.
+/// All cells against all nodes of one edge.
 std::vector<Contents> contentsByTheWords(const SkipScene& scene, const ValueBins& bins, int edge) {
-    const glm::ivec3 dims = scene.geometry.dims;
-    const glm::ivec3 nodes = (dims + edge - 1) / edge;
+    const glm::ivec3 nodes = blocksOf(scene.geometry.dims, edge);
     const CellVisibility visibility = scene.visibility();
     std::vector<Contents> contents(std::size_t(nodes.x) * nodes.y * nodes.z);
-    forBox(glm::ivec3(-1), dims, [&](glm::ivec3 cell) {
-        std::uint16_t low = 65535;
-        std::uint16_t high = 0;
-        forBox(cell, cell + 2, [&](glm::ivec3 corner) {
-            const auto code = scene.code(glm::clamp(corner, glm::ivec3(0), dims - 1));
-            low = std::min(low, code);
-            high = std::max(high, code);
-        });
-        std::array<std::uint32_t, 4> bits{};
+    Contents cell;
+    const auto lookAtCell = [&](std::uint16_t low, std::uint16_t high) {
+        cell = {visibility.visible(low, high), low, high, {}};
         for (int bin = bins.binOfCode[low]; bin <= bins.binOfCode[high]; ++bin) {
-            bits[bin / 32] |= 1U << (bin % 32);
+            cell.bits[bin / 32] |= 1U << (bin % 32);
         }
-        const glm::dvec3 from = glm::max(glm::dvec3(cell) + 0.5, 0.0);
-        const glm::dvec3 to = glm::min(glm::dvec3(cell) + 1.5, glm::dvec3(dims));
-        forBox(glm::ivec3(0), nodes, [&](glm::ivec3 node) {
-            const glm::dvec3 nodeFrom = glm::dvec3(node * edge) - 1.0;
-            const glm::dvec3 nodeTo = glm::dvec3((node + 1) * edge) + 1.0;
-            if (glm::all(glm::lessThanEqual(from, nodeTo)) &&
-                glm::all(glm::lessThanEqual(nodeFrom, to))) {
-                Contents& c = contents[(std::size_t(node.z) * nodes.y + node.y) * nodes.x + node.x];
-                c.visible = c.visible || visibility.visible(low, high);
-                c.least = std::min<std::uint32_t>(c.least, low);
-                c.greatest = std::max<std::uint32_t>(c.greatest, high);
-                for (int w = 0; w < 4; ++w) {
-                    c.bits[w] |= bits[w];
-                }
-            }
-        });
+        return true;
+    };
+    test::forBlocksThatCellsMeet(scene, edge, lookAtCell, [&](std::size_t node) {
+        Contents& c = contents[node];
+        c.visible = c.visible || cell.visible;
+        c.least = std::min(c.least, cell.least);
+        c.greatest = std::max(c.greatest, cell.greatest);
+        for (int w = 0; w < 4; ++w) {
+            c.bits[w] |= cell.bits[w];
+        }
     });
     return contents;
 }
@@ -173,7 +138,7 @@ std::vector<Contents> contentsByTheWords(const SkipScene& scene, const ValueBins
 /// The same as a level of an octree.
 OctreeLevel levelByTheWords(const Octree& octree, glm::ivec3 dims, int edge,
                             const std::vector<Contents>& contents) {
-    OctreeLevel level{(dims + edge - 1) / edge, {}};
+    OctreeLevel level{blocksOf(dims, edge), {}};
     for (const Contents& c : contents) {
         switch (octree.content) {
         case NodeContent::Occupied:

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "core/skip/occupancy.h"
 #include "tests/support/skip_blocks.h"
 
 namespace slabcast {
@@ -47,9 +46,6 @@ RC_GTEST_PROP(ProximityCloud, OccupiesTheBlocksThatVisibleCellsMeet, ()) {
     const SkipScene scene = randomScene(20);
     const int edge = randomEdge();
     const std::vector<std::uint8_t> expected = occupiedByTheWords(scene, scene.visibility(), edge);
-    const auto occupancy = occupiedBlocks(scene.visibility(), edge);
-    RC_ASSERT(occupancy.has_value());
-    RC_ASSERT(occupancy->occupied == expected);
     const FreeLengths cloud = built(scene, edge);
     forBox(glm::ivec3(0), cloud.blocks, [&](glm::ivec3 block) {
         const bool occupied = expected[indexOf(block, cloud.blocks)] != 0;

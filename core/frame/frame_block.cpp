@@ -4,7 +4,6 @@
 #include <bit>
 
 #include "core/frame/scene.h"
-#include "core/skip/skip_texture.h"
 #include "core/transfer/table_axis.h"
 
 namespace slabcast {
@@ -34,16 +33,18 @@ glm::uvec4 shaderTest(const NodeTest& test, int bitsPerNode) {
 
 void fillSkip(FrameBlock& block, const BuiltSkip& skip, glm::ivec3 dims) {
     const int edge = skip.options.blockEdgeVoxels;
-    const glm::ivec3 blocks = (dims + edge - 1) / edge;
+    const glm::ivec3 blocks = blocksOf(dims, edge);
     block.skipMap =
         packed(glm::dvec3(dims) / double(edge), skip.lengths ? skip.lengths->quantumMm : 0.0);
     const bool topDown = skip.options.traversal == Traversal::TopDown;
     block.skipBlocks = glm::ivec4(blocks - 1, topDown ? kToInitialLevel : 1);
     if (skip.octree) {
         const int bits = skip.octree->bitsPerNode;
-        const int perTexel = octreeLayout(blocks, skip.octree->coarsest() + 1, bits).perTexel;
-        block.octree = {skip.octree->coarsest(), std::countr_zero(unsigned(perTexel)), perTexel - 1,
-                        bits};
+        const SkipLayout layout = octreeLayout(blocks, skip.octree->coarsest() + 1, bits);
+        block.octree = {skip.octree->coarsest(), std::countr_zero(unsigned(layout.perTexel)),
+                        layout.levels.front().fold, bits};
+        std::transform(layout.levels.begin(), layout.levels.end(), block.octreeLevels.begin(),
+                       [](const SkipLevel& level) { return glm::ivec4(level.first, 0, 0, 0); });
         block.nodeTest = shaderTest(skip.test, bits);
     }
 }

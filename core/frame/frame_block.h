@@ -6,6 +6,7 @@
 
 #include "core/frame/frame_plan.h"
 #include "core/frame/lattice.h"
+#include "core/skip/skip_texture.h"
 
 namespace slabcast {
 
@@ -30,8 +31,9 @@ struct FrameBlock {
     glm::ivec4 octree;
     glm::uvec4 nodeTest;
     glm::ivec4 jitter;
+    std::array<glm::ivec4, kMaxOctreeLevels> octreeLevels;
 };
-static_assert(sizeof(FrameBlock) == 16 * 27);
+static_assert(sizeof(FrameBlock) == 16 * (27 + kMaxOctreeLevels));
 
 class Scene;
 

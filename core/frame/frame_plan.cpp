@@ -123,23 +123,44 @@ struct Planner {
         return ratio;
     }
 
+    /// How much of the structure's blocks the TF makes visible. An octree's fraction is that of
+    /// larger nodes where it has many leaves.
+    std::string occupancy() const {
+        const bool octree = isOctree(facts.skip.structure);
+        return shortNumber(100.0 * facts.occupiedFraction) + " % of the " +
+               std::to_string(facts.skip.blockEdgeVoxels) + "-voxel " +
+               (octree ? "leaves at most" : "blocks") +
+               " hold something visible under this transfer function";
+    }
+
+    /// What auto goes by, beside the occupancy.
+    std::string costOfLooks() const {
+        return facts.exactField
+                   ? "a look spares layers of 8 fetches"
+                   : "planes of " + std::to_string(plan.layersPerPlane) +
+                         " layers (a look at the structure pays from " +
+                         std::to_string(kFewestLayersToSkip) +
+                         " on, as measured on a software driver" +
+                         (caps.isSoftware ? ", which this is)" : ", not on this device)");
+    }
+
     /// The structure that was built, or none: asked for, or where it would not pay.
     void chooseSkip() {
-        const std::string occupied = shortNumber(100.0 * facts.occupiedFraction);
         const SkipStructure built = facts.skip.structure;
         if (built == SkipStructure::None) {
             because("skip none", "no skip structure was built for this look");
         } else if (settings.skip == SkipStructure::None) {
             because("skip none", "asked for");
         } else if (settings.skip) {
-            takeSkip("asked for");
+            takeSkip("asked for; " + occupancy());
         } else if (facts.occupiedFraction > kWorthSkipping) {
-            because("skip none", occupied + " % of the blocks hold something visible");
+            because("skip none", "auto: " + occupancy() + ": above " +
+                                     shortNumber(100.0 * kWorthSkipping) +
+                                     " % looks cost more than they save");
         } else if (plan.layersPerPlane < kFewestLayersToSkip && !facts.exactField) {
-            because("skip none", "planes of " + std::to_string(plan.layersPerPlane) +
-                                     " layers: a look at the structure costs what it saves");
+            because("skip none", "auto: " + costOfLooks());
         } else {
-            takeSkip("only " + occupied + " % of the blocks hold something visible");
+            takeSkip("auto: only " + occupancy() + ", and " + costOfLooks());
         }
     }
 

@@ -1,6 +1,6 @@
 #include "core/frame/fullscreen_pass.h"
 
-#include "core/frame/shader_text.h"
+#include "core/gl/shader_text.h"
 #include "core/gl/api.h"
 
 namespace slabcast {

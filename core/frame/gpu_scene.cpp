@@ -1,12 +1,19 @@
 #include "core/frame/gpu_scene.h"
 
 #include <algorithm>
+#include <iterator>
+#include <limits>
+#include <utility>
 
 #include "core/volume/volume_texture.h"
 
 namespace slabcast {
 
 namespace {
+
+constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
+/// Uploaded at a time: the driver's copies stay small beside the structure.
+constexpr std::int64_t kStagingBytes = 16 << 20;
 
 /// Keeps the texture, or hands on what went wrong.
 Result<void> keep(gl::Texture& slot, Result<gl::Texture> made) {
@@ -48,9 +55,14 @@ const GpuScene::HeldSkip* GpuScene::held(const BuiltSkip& skip) const {
     return found == skips_.end() ? nullptr : &*found;
 }
 
+GpuScene::HeldSkip* GpuScene::held(const BuiltSkip& skip) {
+    return const_cast<HeldSkip*>(std::as_const(*this).held(skip));
+}
+
 bool GpuScene::serve(const Scene& scene, const FramePlan& plan) const {
     const bool skips = plan.skip != SkipStructure::None && !plan.drawsNothing;
-    return held_ == needs(scene, plan) && (!skips || held(scene.skip()) != nullptr);
+    const HeldSkip* skip = held(scene.skip());
+    return held_ == needs(scene, plan) && (!skips || (skip != nullptr && skip->whole()));
 }
 
 Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const gl::Caps& caps) {
@@ -75,22 +87,72 @@ Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const g
 
 Result<void> GpuScene::updateSkips(const Scene& scene, const FramePlan& plan,
                                    const gl::Caps& caps) {
+    const bool live = scene.live() != nullptr;
     const std::vector<const BuiltSkip*> needed = neededSkips(scene, plan);
-    std::erase_if(skips_, [&](const HeldSkip& one) {
-        return std::none_of(needed.begin(), needed.end(), [&](const BuiltSkip* skip) {
+    const auto isNeeded = [&](const HeldSkip& one) {
+        return std::any_of(needed.begin(), needed.end(), [&](const BuiltSkip* skip) {
             return skip->generation == one.generation;
         });
-    });
+    };
+    const auto firstOld = std::partition(skips_.begin(), skips_.end(), isNeeded);
+    std::vector<HeldSkip> old(std::make_move_iterator(firstOld),
+                              std::make_move_iterator(skips_.end()));
+    skips_.erase(firstOld, skips_.end());
+    if (!live) { // before the next is allocated: two may not fit
+        old.clear();
+        spare_.reset();
+    }
     for (const BuiltSkip* skip : needed) {
-        if (held(*skip) != nullptr) {
-            continue;
+        const bool canWait = live && skip == &scene.live()->incoming();
+        Result<void> done = skip->octree
+                                ? needOctree(*skip, caps)
+                                : needGrid(*skip, canWait ? kUploadBytesPerFrame : kAll, caps);
+        if (!done) {
+            return done;
         }
-        Result<SkipTexture> made = skip->octree ? uploadOctree(*skip->octree, caps)
-                                                : uploadFreeLengths(*skip->lengths, caps);
-        if (!made) {
-            return tl::unexpected(made.error());
+    }
+    for (HeldSkip& one : old) { // not before: the last frame may still be drawn with it
+        if (one.blocks.z > 0) {
+            spare_ = std::move(one);
         }
-        skips_.push_back({skip->generation, std::move(*made)});
+    }
+    return {};
+}
+
+Result<void> GpuScene::needOctree(const BuiltSkip& skip, const gl::Caps& caps) {
+    if (held(skip) != nullptr) {
+        return {};
+    }
+    return uploadOctree(*skip.octree, caps).map([&](SkipTexture&& made) {
+        skips_.push_back({skip.generation, std::move(made)});
+    });
+}
+
+Result<void> GpuScene::needGrid(const BuiltSkip& skip, std::int64_t mostBytes,
+                                const gl::Caps& caps) {
+    const FreeLengths& grid = *skip.lengths;
+    HeldSkip* one = held(skip);
+    if (one == nullptr) {
+        if (!spare_ || spare_->blocks != grid.blocks) {
+            Result<SkipTexture> made = allocateFreeLengths(grid.blocks, caps);
+            if (!made) {
+                return tl::unexpected(made.error());
+            }
+            spare_ = HeldSkip{0, std::move(*made), grid.blocks};
+        }
+        one = &skips_.emplace_back(std::move(*spare_));
+        spare_.reset();
+        one->generation = skip.generation;
+        one->slices = 0;
+    }
+    while (!one->whole() && mostBytes > 0) {
+        const int slices = slicesWithin(std::min(mostBytes, kStagingBytes), grid.blocks);
+        const int end = std::min(one->slices + slices, grid.blocks.z);
+        if (Result<void> done = uploadSlices(one->texture, grid, one->slices, end); !done) {
+            return done;
+        }
+        one->slices = end;
+        mostBytes -= kStagingBytes;
     }
     return {};
 }
@@ -135,7 +197,11 @@ Result<GLuint> GpuScene::volumeTexture(const Scene& scene, bool pre, const gl::C
 
 void GpuScene::adopt(const BuiltSkip& skip, SkipTexture texture) {
     skips_.clear();
-    skips_.push_back({skip.generation, std::move(texture)});
+    HeldSkip& one = skips_.emplace_back(HeldSkip{skip.generation, std::move(texture)});
+    if (skip.lengths) {
+        one.blocks = skip.lengths->blocks;
+        one.slices = one.blocks.z;
+    }
 }
 
 std::int64_t GpuScene::skipBytes() const {
@@ -143,7 +209,7 @@ std::int64_t GpuScene::skipBytes() const {
     for (const HeldSkip& one : skips_) {
         bytes += one.texture.bytes;
     }
-    return bytes;
+    return bytes + (spare_ ? spare_->texture.bytes : 0);
 }
 
 void GpuScene::bind(const BuiltSkip& skip) const {
@@ -166,6 +232,9 @@ void GpuScene::forget() {
     table_.forget();
     for (HeldSkip& one : skips_) {
         one.texture.texture.forget();
+    }
+    if (spare_) {
+        spare_->texture.texture.forget();
     }
     *this = GpuScene();
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/frame/frame_plan.h"
@@ -47,18 +48,25 @@ private:
     struct HeldSkip {
         int generation = 0;
         SkipTexture texture;
+        glm::ivec3 blocks{0}; // of a grid, which may be uploaded in several goes
+        int slices = 0;       // of them, so far
+        bool whole() const { return slices == blocks.z; }
     };
     static Sources needs(const Scene& scene, const FramePlan& plan);
     static std::vector<const BuiltSkip*> neededSkips(const Scene& scene, const FramePlan& plan);
+    HeldSkip* held(const BuiltSkip& skip);
     const HeldSkip* held(const BuiltSkip& skip) const;
 
     Result<void> updateVolume(const Scene& scene, bool pre, int generation, const gl::Caps& caps);
     Result<void> updateTable(const Scene& scene, const gl::Caps& caps);
     Result<void> updateSkips(const Scene& scene, const FramePlan& plan, const gl::Caps& caps);
+    Result<void> needOctree(const BuiltSkip& skip, const gl::Caps& caps);
+    Result<void> needGrid(const BuiltSkip& skip, std::int64_t mostBytes, const gl::Caps& caps);
 
     Sources held_;
     gl::Texture volume_, table_;
     std::vector<HeldSkip> skips_;
+    std::optional<HeldSkip> spare_; // a grid's, for the next one: no frame allocates it anew
     std::int64_t volumeBytes_ = 0;
     std::int64_t tableBytes_ = 0;
 };

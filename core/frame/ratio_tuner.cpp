@@ -1,9 +1,9 @@
 #include "core/frame/ratio_tuner.h"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 
+#include "core/base/stopwatch.h"
 #include "core/gl/api.h"
 #include "core/gl/color_targets.h"
 #include "core/gl/state_guard.h"
@@ -20,11 +20,10 @@ constexpr double kHopeless = 8.0;
 
 double drawMs(Renderer& renderer, const Scene& scene, const FramePlan& plan,
               std::span<const ViewTarget> views) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     (void)renderer.draw(scene, plan, views); // fails where a layer does, as the frame itself will
     gl::Finish();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-        .count();
+    return watch.ms();
 }
 
 /// Viewports of a fraction of the size, each at the target's corner.

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/frame/box_cache.h"
 #include "core/frame/gpu_scene.h"
 #include "core/frame/layer_compositor.h"
 #include "core/frame/plane_blending.h"
+#include "core/frame/program_cache.h"
 #include "core/frame/saturation_marks.h"
 #include "core/frame/stack_drawer.h"
 #include "core/gl/api.h"
@@ -48,12 +50,6 @@ bool needsLayer(const FramePlan& plan, TargetEncoding encoding) {
            conversionTo(plan.space, encoding) != LayerConversion::None;
 }
 
-std::vector<VisibleBox> visibleBoxesOf(const Scene& scene, double layerLengthMm) {
-    const BuiltSkip& skip = scene.skip();
-    return skip.octree ? visibleBoxes(*skip.octree, skip.test, scene.geometry(), layerLengthMm)
-                       : visibleBoxes(*skip.lengths, scene.geometry(), layerLengthMm);
-}
-
 } // namespace
 
 struct Renderer::State {
@@ -65,20 +61,14 @@ struct Renderer::State {
     gl::ColorTargets layer, counters;
     std::optional<GpuSkipBuilder> builder; // made when it is first needed
     bool created = false;                  // the objects that do not depend on a scene
-    std::map<ShaderVariant, gl::Program> programs;
-    // What visible boxes were made for.
-    int boxesOfLook = -1;
-    int boxesOfSkip = -1;
-    double boxesOfLengthMm = 0.0;
-    std::vector<VisibleBox> boxes;
+    ProgramCache programs;
+    BoxCache boxes;
 
     Result<void> createFixed();
-    Result<const gl::Program*> program(const ShaderVariant& variant);
-    void updateBoxes(const Scene& scene, double layerLengthMm);
     /// Readies the view's planes for drawing; returns the runs to draw them in.
     std::vector<PlaneRun> beginStack(const Scene& scene, const FramePlan& plan, const View& view,
                                      const Viewport& viewport, int planesPerRun);
-    Result<void> resizeLayer(const FramePlan& plan, const Viewport& viewport);
+    Result<void> resizeLayer(const Scene& scene, const FramePlan& plan, const Viewport& viewport);
     void drawRun(const gl::ColorTargets& into, const FramePlan& plan, glm::ivec2 size,
                  const gl::Program& program, const PlaneRun& run) const;
     /// Marks what the layer has of saturated pixels in the depth of `marked`.
@@ -98,39 +88,6 @@ Result<void> Renderer::State::createFixed() {
     return done;
 }
 
-Result<const gl::Program*> Renderer::State::program(const ShaderVariant& variant) {
-    const auto known = programs.find(variant);
-    if (known != programs.end()) {
-        return &known->second;
-    }
-    const Result<ShaderPair> text = shaderText(variant);
-    if (!text) {
-        return tl::unexpected(text.error());
-    }
-    Result<gl::Program> built =
-        gl::buildProgram(slabcast::name(variant), text->vertex, text->fragment);
-    if (!built) {
-        return tl::unexpected(built.error());
-    }
-    StackDrawer::connect(*built);
-    return &programs.emplace(variant, std::move(*built)).first->second;
-}
-
-void Renderer::State::updateBoxes(const Scene& scene, double layerLengthMm) {
-    // Rounded up to a power of two: views of slightly different width share their boxes.
-    const double length = std::exp2(std::ceil(std::log2(layerLengthMm)));
-    // A grid is of one transfer function; of an octree, each shows other nodes.
-    const int look = scene.skip().octree ? scene.lookGeneration() : 0;
-    if (boxesOfLook == look && boxesOfSkip == scene.skip().generation &&
-        boxesOfLengthMm == length) {
-        return;
-    }
-    boxes = visibleBoxesOf(scene, length);
-    boxesOfLook = look;
-    boxesOfSkip = scene.skip().generation;
-    boxesOfLengthMm = length;
-}
-
 std::vector<PlaneRun> Renderer::State::beginStack(const Scene& scene, const FramePlan& plan,
                                                   const View& view, const Viewport& viewport,
                                                   int planesPerRun) {
@@ -141,9 +98,9 @@ std::vector<PlaneRun> Renderer::State::beginStack(const Scene& scene, const Fram
         const Frustum& f = view.frustum;
         const glm::dvec2 widest(std::max(std::abs(f.left), std::abs(f.right)),
                                 std::max(std::abs(f.bottom), std::abs(f.top)));
-        updateBoxes(scene, plan.lattice.spacingMm * std::sqrt(1.0 + glm::dot(widest, widest)));
-        stack = tightStack(frame, f, view.viewFromModel * scene.geometry().modelFromUvw(), boxes,
-                           plan.planes, plan.layersPerPlane);
+        const double longest = plan.lattice.spacingMm * std::sqrt(1.0 + glm::dot(widest, widest));
+        stack = tightStack(frame, f, view.viewFromModel * scene.geometry().modelFromUvw(),
+                           boxes.boxesOf(scene, longest), plan.planes, plan.layersPerPlane);
     } else {
         stack = sphereStack(frame, view.frustum, plan.planes, plan.layersPerPlane);
     }
@@ -223,16 +180,18 @@ Result<void> Renderer::prepare(const Scene& scene, const FramePlan& plan) {
             return done;
         }
     }
-    const Result<const gl::Program*> program = state_->program(plan.variant);
+    const Result<const gl::Program*> program = state_->programs.need(plan.variant);
     return program ? Result<void>{} : tl::unexpected(program.error());
 }
 
-Result<void> Renderer::State::resizeLayer(const FramePlan& plan, const Viewport& v) {
+Result<void> Renderer::State::resizeLayer(const Scene& scene, const FramePlan& plan,
+                                          const Viewport& v) {
     std::vector<GLenum> formats{glFormat(plan.target)};
-    if (plan.planesPerMark > 0) {
+    // Only ever grows: views of different sizes share it without a new one in every frame. So do
+    // TFs that need marks and others that do not, while the scene is edited.
+    if (plan.planesPerMark > 0 || (scene.live() != nullptr && layer.hasDepth())) {
         formats.push_back(GL_DEPTH_COMPONENT16);
     }
-    // Only ever grows: views of different sizes share it without a new one in every frame.
     return layer.resize(std::max(v.width, layer.width()), std::max(v.height, layer.height()),
                         formats);
 }
@@ -256,7 +215,7 @@ Result<void> Renderer::State::drawLayer(const Scene& scene, const FramePlan& pla
                                         const ViewTarget& target, const gl::Program& program) {
     const Viewport& v = target.viewport;
     const glm::ivec2 size(v.width, v.height);
-    if (Result<void> done = resizeLayer(plan, v); !done) {
+    if (Result<void> done = resizeLayer(scene, plan, v); !done) {
         return done;
     }
     usePlaneBlending(plan.order);
@@ -269,6 +228,7 @@ Result<void> Renderer::State::drawLayer(const Scene& scene, const FramePlan& pla
         }
         drawRun(layer, plan, size, program, runs[i]);
     }
+    layer.dropDepth();
     useBlending(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     gl::BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     gl::Viewport(v.x, v.y, v.width, v.height);
@@ -282,8 +242,8 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
         return {};
     }
     const gl::StateGuard guard;
-    const auto program = state_->programs.find(plan.variant);
-    SLABCAST_EXPECTS(program != state_->programs.end(), plan.variant.unroll);
+    const gl::Program* program = state_->programs.find(plan.variant);
+    SLABCAST_EXPECTS(program != nullptr, plan.variant.unroll);
     SLABCAST_EXPECTS(fits(plan, scene) && state_->textures.serve(scene, plan),
                      scene.lookGeneration());
     for (const ViewTarget& target : views) {
@@ -292,8 +252,7 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
             continue; // a window made small
         }
         if (needsLayer(plan, target.encoding)) {
-            if (Result<void> done = state_->drawLayer(scene, plan, target, program->second);
-                !done) {
+            if (Result<void> done = state_->drawLayer(scene, plan, target, *program); !done) {
                 return done;
             }
             continue;
@@ -302,7 +261,7 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
         gl::BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
         gl::Viewport(v.x, v.y, v.width, v.height);
         for (const PlaneRun& run : state_->beginStack(scene, plan, target.view, v, 0)) {
-            state_->drawer.draw(program->second, run);
+            state_->drawer.draw(*program, run);
         }
     }
     return {};
@@ -318,8 +277,8 @@ Result<void> Renderer::State::count(const Scene& scene, const FramePlan& plan,
     const bool needsPicture = marked || plan.variant.fetchesTarget;
     ShaderVariant counting = plan.variant;
     counting.counts = true;
-    const Result<const gl::Program*> counts = program(counting);
-    const Result<const gl::Program*> colours = needsPicture ? program(plan.variant) : counts;
+    const Result<const gl::Program*> counts = programs.need(counting);
+    const Result<const gl::Program*> colours = needsPicture ? programs.need(plan.variant) : counts;
     if (!counts || !colours) {
         return tl::unexpected(counts ? colours.error() : counts.error());
     }
@@ -327,7 +286,7 @@ Result<void> Renderer::State::count(const Scene& scene, const FramePlan& plan,
     formats.resize(marked ? 3 : 2, GL_DEPTH_COMPONENT16);
     Result<void> resized = counters.resize(v.width, v.height, formats);
     if (resized && needsPicture) {
-        resized = resizeLayer(plan, v);
+        resized = resizeLayer(scene, plan, v);
     }
     if (!resized) {
         return resized;
@@ -408,14 +367,13 @@ Result<WorkCounters> Renderer::countWork(const Scene& scene, const FramePlan& pl
 }
 
 double Renderer::compileMs(const ShaderVariant& variant) const {
-    const auto found = state_->programs.find(variant);
-    return found == state_->programs.end() ? 0.0 : found->second.buildMs();
+    const gl::Program* program = state_->programs.find(variant);
+    return program == nullptr ? 0.0 : program->buildMs();
 }
 
 gl::ActiveResources Renderer::resources(const ShaderVariant& variant) const {
-    const auto found = state_->programs.find(variant);
-    return found == state_->programs.end() ? gl::ActiveResources{}
-                                           : gl::activeResources(found->second);
+    const gl::Program* program = state_->programs.find(variant);
+    return program == nullptr ? gl::ActiveResources{} : gl::activeResources(*program);
 }
 
 GpuMemory Renderer::gpuMemory() const {
@@ -435,10 +393,7 @@ void Renderer::contextLost() {
     state_->marks.forget();
     state_->layer.forget();
     state_->counters.forget();
-    for (auto& [variant, program] : state_->programs) {
-        program.forget();
-    }
-    state_->programs.clear();
+    state_->programs.forget();
     state_->created = false;
 }
 

@@ -51,7 +51,7 @@ Result<void> Scene::setLook(const Look& look, const SkipOptions& skip, int maxTa
         }
         classified_ = classify(*texels_, geometry_, table(), settings);
     }
-    skip_ = {.options = {.structure = SkipStructure::None}};
+    skip_ = noSkip();
     return skip.structure == SkipStructure::None
                ? Result<void>{}
                : buildSkip([&](const SkipSource& s) { return slabcast::buildSkip(s, skip); });
@@ -104,7 +104,7 @@ Result<void> Scene::startEditing(const LiveOptions& options) {
     return LiveSkip::start({codes_, texels_, geometry_}, options, visibility(), skip())
         .map([&](LiveSkip&& live) {
             live_ = std::move(live);
-            skip_ = {.options = {.structure = SkipStructure::None}};
+            skip_ = noSkip();
         });
 }
 
@@ -132,7 +132,7 @@ void Scene::stopEditing() {
 
 std::vector<const BuiltSkip*> Scene::residentSkips() const {
     if (live_) {
-        return {&live_->always(), &live_->settled()};
+        return {&live_->always(), &live_->settled(), &live_->incoming()};
     }
     return {&skip_};
 }

@@ -81,8 +81,7 @@ public:
         return preintegrated_ ? &*preintegrated_ : nullptr;
     }
     const BuiltSkip& skip() const { return live_ ? live_->current() : skip_; }
-    /// Those whose textures are to be kept: skip(), and while editing the one that it takes turns
-    /// with.
+    /// Those whose textures are to be kept: skip(), and while editing what it takes turns with.
     std::vector<const BuiltSkip*> residentSkips() const;
     /// Numbers that no other texels and no other look of this process have: textures made from
     /// others are stale.

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/frame/shader_text.h"
+#include "core/gl/shader_text.h"
 #include "core/skip/skip_structure.h"
 
 namespace slabcast {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/base/parallel.h"
+
 namespace slabcast {
 
 namespace {
@@ -76,20 +78,47 @@ std::vector<VisibleBox> MacroGrid::boxes(const VolumeGeometry& geometry,
     return boxes;
 }
 
+void keepLesser(const std::uint8_t* counts, std::int64_t n, std::uint8_t* __restrict least) {
+    for (std::int64_t i = 0; i < n; ++i) {
+        least[i] = std::min(least[i], counts[i]);
+    }
+}
+
+/// The least count at every x in the rows of `edge` times `edge` blocks from `first` on.
+void leastOfRows(const FreeLengths& lengths, glm::ivec3 first, int edge,
+                 std::vector<std::uint8_t>& least) {
+    const glm::ivec3 blocks = lengths.blocks;
+    const glm::ivec3 end = glm::min(first + edge, blocks);
+    std::fill(least.begin(), least.end(), std::uint8_t(255));
+    for (int z = first.z; z < end.z; ++z) {
+        for (int y = first.y; y < end.y; ++y) {
+            const std::int64_t row = (std::int64_t(z) * blocks.y + y) * blocks.x;
+            keepLesser(lengths.counts.data() + row, blocks.x, least.data());
+        }
+    }
+}
+
 } // namespace
 
 std::vector<VisibleBox> visibleBoxes(const FreeLengths& lengths, const VolumeGeometry& geometry,
                                      double layerLengthMm) {
     MacroGrid grid(lengths.blocks, lengths.blockEdgeVoxels);
-    const std::uint8_t* length = lengths.counts.data();
-    for (int z = 0; z < lengths.blocks.z; ++z) {
-        for (int y = 0; y < lengths.blocks.y; ++y) {
-            std::uint8_t* row = grid.row(y, z);
+    const glm::ivec3 cubes = grid.size();
+    const std::int64_t rowsOfCubes = std::int64_t(cubes.y) * cubes.z;
+    const std::int64_t blocksPerRow = std::int64_t(lengths.blocks.x) << (2 * grid.shift());
+    constexpr std::int64_t kGrain = 1 << 18; // blocks that are worth another thread
+    const auto markRows = [&](std::int64_t begin, std::int64_t end) {
+        std::vector<std::uint8_t> least(lengths.blocks.x);
+        for (std::int64_t i = begin; i < end; ++i) {
+            const glm::ivec3 first(0, i % cubes.y << grid.shift(), i / cubes.y << grid.shift());
+            leastOfRows(lengths, first, 1 << grid.shift(), least);
+            std::uint8_t* row = grid.row(first.y, first.z);
             for (int x = 0; x < lengths.blocks.x; ++x) {
-                row[x >> grid.shift()] |= *length++ == 0;
+                row[x >> grid.shift()] |= least[x] == 0;
             }
         }
-    }
+    };
+    parallelFor(rowsOfCubes, std::max<std::int64_t>(1, kGrain / blocksPerRow), markRows);
     return grid.boxes(geometry, layerLengthMm);
 }
 

@@ -18,7 +18,8 @@ struct VisibleBox {
 
 /// The occupied blocks, merged to boxes of eight voxels or more so that there are 16,384 places for
 /// one at most. Boxes on the volume's faces reach half a layer further: there a layer's sample may
-/// lie outside, clamped. Depends on the TF and the layer length, not on the view. Cost: O(blocks).
+/// lie outside, clamped. Depends on the TF and the layer length, not on the view. Cost: O(blocks),
+/// all cores.
 /// Tested by: proxy_stack_test.cpp
 std::vector<VisibleBox> visibleBoxes(const FreeLengths& lengths, const VolumeGeometry& geometry,
                                      double layerLengthMm);

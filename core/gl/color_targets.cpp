@@ -74,6 +74,13 @@ void ColorTargets::begin(glm::vec4 color) const {
     }
 }
 
+void ColorTargets::dropDepth() const {
+    if (hasDepth()) {
+        const GLenum depth = GL_DEPTH_ATTACHMENT;
+        InvalidateFramebuffer(GL_FRAMEBUFFER, 1, &depth);
+    }
+}
+
 std::vector<glm::vec4> ColorTargets::read(std::size_t index) const {
     BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
     ReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(index));

@@ -23,6 +23,10 @@ public:
     /// `color`, depth with 1. Leaves the depth mask on where there is depth.
     void begin(glm::vec4 color = glm::vec4(0.0F)) const;
 
+    /// Depth is not needed any more: a tiler then has nothing of it to store. Contract: it is the
+    /// draw framebuffer. Does nothing where there is none.
+    void dropDepth() const;
+
     /// Waits for the GPU and reads one texture, rows from the bottom up. 8-bit values come as
     /// k/255.
     std::vector<glm::vec4> read(std::size_t index = 0) const;
@@ -31,6 +35,7 @@ public:
     int height() const { return height_; }
     GLuint framebuffer() const { return framebuffer_.id(); }
     GLuint texture(std::size_t index) const { return textures_[index].id(); }
+    bool hasDepth() const { return !formats_.empty() && formats_.back() == GL_DEPTH_COMPONENT16; }
     GLuint depth() const { return textures_.back().id(); } // contract: there is one
     std::int64_t bytes() const;
     void forget(); // contextLost

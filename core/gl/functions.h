@@ -38,6 +38,7 @@
     X(GetProgramiv, GETPROGRAMIV) X(GetShaderInfoLog, GETSHADERINFOLOG)                           \
     X(GetShaderiv, GETSHADERIV) X(GetString, GETSTRING) X(GetStringi, GETSTRINGI)                 \
     X(GetUniformBlockIndex, GETUNIFORMBLOCKINDEX) X(GetUniformLocation, GETUNIFORMLOCATION)       \
+    X(InvalidateFramebuffer, INVALIDATEFRAMEBUFFER)                                               \
     X(IsBuffer, ISBUFFER) X(IsEnabled, ISENABLED) X(IsFramebuffer, ISFRAMEBUFFER)                 \
     X(IsProgram, ISPROGRAM) X(IsSampler, ISSAMPLER) X(IsTexture, ISTEXTURE)                       \
     X(IsVertexArray, ISVERTEXARRAY) X(LinkProgram, LINKPROGRAM) X(MapBufferRange, MAPBUFFERRANGE) \
@@ -50,7 +51,8 @@
     X(TexSubImage2D, TEXSUBIMAGE2D) X(TexSubImage3D, TEXSUBIMAGE3D) X(Uniform1f, UNIFORM1F)       \
     X(Uniform1i, UNIFORM1I) X(Uniform1ui, UNIFORM1UI) X(Uniform2f, UNIFORM2F)                     \
     X(Uniform2i, UNIFORM2I) X(Uniform3fv, UNIFORM3FV) X(Uniform3i, UNIFORM3I)                     \
-    X(Uniform4uiv, UNIFORM4UIV) X(UniformBlockBinding, UNIFORMBLOCKBINDING)                       \
+    X(Uniform4i, UNIFORM4I) X(Uniform4uiv, UNIFORM4UIV)                                           \
+    X(UniformBlockBinding, UNIFORMBLOCKBINDING)                                                   \
     X(UnmapBuffer, UNMAPBUFFER) X(UseProgram, USEPROGRAM)                                         \
     X(VertexAttribPointer, VERTEXATTRIBPOINTER) X(Viewport, VIEWPORT)
 // clang-format on

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <span>
 #include <vector>
+
+#include "core/base/stopwatch.h"
 
 namespace slabcast::gl {
 
@@ -61,7 +62,7 @@ tl::unexpected<Error> buildFailure(std::string_view label, std::string_view step
 }
 
 Result<Program> build(std::string_view label, std::span<const StageText> stages) {
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     ProgramObject program = ProgramObject::make(label);
     std::vector<Shader> shaders;
     shaders.reserve(stages.size());
@@ -88,9 +89,7 @@ Result<Program> build(std::string_view label, std::span<const StageText> stages)
     for (const Shader& shader : shaders) {
         DetachShader(program.id(), shader.id());
     }
-    const std::chrono::duration<double, std::milli> spent =
-        std::chrono::steady_clock::now() - begin;
-    return Program(std::move(program), spent.count());
+    return Program(std::move(program), watch.ms());
 }
 
 } // namespace

@@ -4,7 +4,8 @@
 
 namespace slabcast {
 
-/// Octree of occupied nodes, for one TF: the leaves of occupiedBlocks(). Cost: O(nodes), all cores.
+/// Octree of occupied nodes, for one TF: occupied as blocks are, see core/skip/occupancy.h. Cost:
+/// O(nodes), all cores.
 /// Source: Faludi et al. 2021, section 4.4. Tested by: octree_test.cpp
 Octree booleanOctree(const Octree& minMax, const CellVisibility& visibility);
 

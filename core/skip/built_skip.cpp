@@ -1,8 +1,8 @@
 #include "core/skip/built_skip.h"
 
 #include <atomic>
-#include <chrono>
 
+#include "core/base/stopwatch.h"
 #include "core/skip/blocks.h"
 #include "core/skip/boolean_octree.h"
 #include "core/skip/chebyshev.h"
@@ -13,12 +13,6 @@
 namespace slabcast {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double msSince(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 int nextGeneration() {
     static std::atomic<int> last{0};
@@ -126,14 +120,14 @@ double visibleFraction(const BuiltSkip& skip, int level) {
 
 /// What a TF changes: the merged map, or the test of nodes.
 void apply(BuiltSkip& skip, const CellVisibility& visibility) {
-    const auto start = Clock::now();
+    const Stopwatch watch;
     if (skip.maps) {
         keep(skip, merged(*skip.maps, visibleBins(skip.maps->bins, visibility)));
     } else if (skip.octree) {
         skip.test = testOf(skip, visibility);
         skip.occupiedFraction = visibleFraction(skip, countedLevel(*skip.octree));
     }
-    skip.updateMs = msSince(start);
+    skip.updateMs = watch.ms();
 }
 
 } // namespace
@@ -154,12 +148,16 @@ ValueBins binsOf(const SkipSource& s, const SkipOptions& o) {
 BuiltSkip asBuilt(const SkipOptions& options, SkipData data, const CellVisibility& visibility) {
     BuiltSkip skip{.options = options};
     std::visit([&](auto& built) { keep(skip, std::move(built)); }, data);
+    if (infoOf(options.structure).dependsOnTransfer) {
+        skip.shown = visibleValues(visibility);
+    }
     apply(skip, visibility);
     return skip;
 }
 
-BuiltSkip builtSkip(const SkipOptions& options, std::shared_ptr<const FreeLengths> grid) {
-    BuiltSkip skip{.options = options};
+BuiltSkip builtSkip(const SkipOptions& options, std::shared_ptr<const FreeLengths> grid,
+                    VisibleValues shown) {
+    BuiltSkip skip{.options = options, .shown = std::move(shown)};
     keep(skip, std::move(grid));
     return skip;
 }
@@ -169,13 +167,13 @@ Result<BuiltSkip> buildSkip(const SkipSource& source, const SkipOptions& options
     if (Result<void> ok = check(options); !ok) {
         return tl::unexpected(ok.error());
     }
-    const auto start = Clock::now();
+    const Stopwatch watch;
     Result<SkipData> data = build(source, options, cancel);
     if (!data) {
         return tl::unexpected(data.error());
     }
     BuiltSkip skip = asBuilt(options, std::move(*data), source.visibility);
-    skip.buildMs = msSince(start);
+    skip.buildMs = watch.ms();
     return skip;
 }
 

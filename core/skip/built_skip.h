@@ -7,6 +7,7 @@
 #include "core/skip/free_lengths.h"
 #include "core/skip/octree.h"
 #include "core/skip/partitioned_maps.h"
+#include "core/skip/visible_values.h"
 #include "core/volume/volume.h"
 
 namespace slabcast {
@@ -30,6 +31,7 @@ struct BuiltSkip {
     std::shared_ptr<const Octree> octree;
     std::shared_ptr<const ValueBins> bins; // of a bitfield octree
     NodeTest test;                         // what the TF makes of the octree's nodes
+    VisibleValues shown;                   // what a structure of one TF was built for
     double occupiedFraction = 1.0;         // of blocks or leaves
     int generation = 0;                    // of what the texture holds; unique in this process
     bool onGpu = false;                    // where it was built
@@ -38,6 +40,10 @@ struct BuiltSkip {
 
     bool exists() const { return options.structure != SkipStructure::None; }
 };
+
+inline BuiltSkip noSkip() {
+    return {.options = {.structure = SkipStructure::None}};
+}
 
 /// Of the texture, and of partitioned maps on the host.
 std::int64_t gpuBytes(const BuiltSkip& skip);
@@ -57,8 +63,10 @@ BuiltSkip asBuilt(const SkipOptions& options, SkipData data, const CellVisibilit
 Result<BuiltSkip> buildSkip(const SkipSource& source, const SkipOptions& options,
                             const CancelToken* cancel = nullptr);
 
-/// A grid that was built elsewhere, for the TF of now. Contract: its structure is one of the grids.
-BuiltSkip builtSkip(const SkipOptions& options, std::shared_ptr<const FreeLengths> grid);
+/// A grid that was built elsewhere, for a TF that shows this. Contract: its structure is one of the
+/// grids.
+BuiltSkip builtSkip(const SkipOptions& options, std::shared_ptr<const FreeLengths> grid,
+                    VisibleValues shown);
 
 /// The same structure under another TF. An octree's occupied fraction is that of its finest level
 /// of 32,768 nodes or fewer: no less than the leaves', and zero where theirs is. Cost: O(codes),

@@ -6,6 +6,7 @@
 #include "core/gl/debug.h"
 #include "core/gl/state_guard.h"
 #include "core/skip/gpu_distances.h"
+#include "core/skip/partitioned_maps.h"
 
 namespace slabcast {
 
@@ -18,8 +19,9 @@ struct Need {
 };
 
 constexpr Need kNeeds[] = {
-    {"compute invocations in a workgroup", &gl::Caps::maxComputeInvocations, 128},
-    {"bytes of shared memory in a workgroup", &gl::Caps::maxComputeSharedBytes, 12236},
+    {"compute invocations in a workgroup", &gl::Caps::maxComputeInvocations, kLeavesThreads},
+    {"bytes of shared memory in a workgroup", &gl::Caps::maxComputeSharedBytes,
+     leavesSharedBytes()},
     {"images in a compute shader", &gl::Caps::maxComputeImages, 1},
     {"storage buffers in a compute shader", &gl::Caps::maxComputeStorageBlocks, 1},
 };
@@ -31,15 +33,6 @@ Result<gl::Buffer> makeStorage(const char* label, std::int64_t bytes) {
     gl::BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer.id());
     gl::BufferData(GL_SHADER_STORAGE_BUFFER, bytes, nullptr, GL_DYNAMIC_COPY);
     return takeUploadError(label).map([&] { return std::move(buffer); });
-}
-
-Result<void> checkBytes(std::int64_t bytes, std::int64_t limit, const std::string& whose) {
-    if (bytes <= limit) {
-        return {};
-    }
-    return fail(ErrorCode::VolumeTooLarge, "partitioned maps need " + std::to_string(bytes) +
-                                               " bytes, " + whose + " is " + std::to_string(limit) +
-                                               "; take fewer partitions or a larger block edge");
 }
 
 } // namespace
@@ -73,8 +66,9 @@ Result<SkipTexture> GpuSkipBuilder::freeLengths(const GpuVoxels& voxels,
     clearFound();
     const int edge = options.blockEdgeVoxels;
     const glm::ivec3 blocks = blocksOf(voxels.dims, edge);
-    const Result<SkipTexture> marks =
-        buildPyramid(programs_, caps_, voxels, rangesOf(visibility), {.edgeVoxels = edge}, found_);
+    Result<SkipTexture> marks =
+        buildPyramid(programs_, caps_, voxels, rangesOf(visibility),
+                     {.edgeVoxels = edge, .layout = freeLengthLayout(blocks)}, found_);
     if (!marks) {
         return tl::unexpected(marks.error());
     }
@@ -82,7 +76,7 @@ Result<SkipTexture> GpuSkipBuilder::freeLengths(const GpuVoxels& voxels,
     case SkipStructure::Blocks:
         return blocksFromMarks(programs_, caps_, *marks, blocks);
     case SkipStructure::Chebyshev:
-        return chebyshevFromMarks(programs_, caps_, *marks, blocks);
+        return chebyshevFromMarks(programs_, caps_, std::move(*marks), blocks);
     case SkipStructure::Proximity:
         return proximityFromMarks(programs_, caps_, *marks, blocks, proximityUnits(geometry, edge),
                                   found_);
@@ -114,12 +108,13 @@ Result<SkipTexture> GpuSkipBuilder::octree(const GpuVoxels& voxels, const RangeT
                                            const SkipOptions& options) {
     const gl::StateGuard guard;
     clearFound();
-    return buildPyramid(programs_, caps_, voxels, table,
-                        {.content = content,
-                         .edgeVoxels = options.blockEdgeVoxels,
-                         .levels = octreeLevels(voxels.dims, options),
-                         .bits = bits},
-                        found_);
+    const glm::ivec3 leaves = blocksOf(voxels.dims, options.blockEdgeVoxels);
+    return buildPyramid(
+        programs_, caps_, voxels, table,
+        {.content = content,
+         .edgeVoxels = options.blockEdgeVoxels,
+         .layout = octreeLayout(leaves, keptLevels(leaves, options.initialLevel), bits)},
+        found_);
 }
 
 Result<GpuPartitions> GpuSkipBuilder::partitions(const GpuVoxels& voxels, const ValueBins& bins,
@@ -128,11 +123,12 @@ Result<GpuPartitions> GpuSkipBuilder::partitions(const GpuVoxels& voxels, const 
     const int edge = options.blockEdgeVoxels;
     GpuPartitions result{
         blocksOf(voxels.dims, edge), edge, bins.count, {}, partitionBytes(voxels.dims, options)};
-    if (Result<void> fits =
-            checkBytes(result.bytes, options.memoryBudgetBytes, "the budget").and_then([&] {
-                return checkBytes(result.bytes, caps_.maxStorageBlockBytes,
-                                  "the device's limit of a storage block");
-            });
+    if (Result<void> fits = checkPartitions(options, result.bytes, budgetOf(options)).and_then([&] {
+            return checkPartitions(
+                options, result.bytes,
+                {caps_.maxStorageBlockBytes, "the device's limit of a storage block",
+                 "take fewer partitions or a larger block edge, or build on the CPU"});
+        });
         !fits) {
         return tl::unexpected(fits.error());
     }
@@ -143,7 +139,10 @@ Result<GpuPartitions> GpuSkipBuilder::partitions(const GpuVoxels& voxels, const 
     }
     result.maps = std::move(*maps);
     return buildPyramid(programs_, caps_, voxels, rangesOf(bins),
-                        {.content = NodeContent::Range, .edgeVoxels = edge, .bits = 32}, found_)
+                        {.content = NodeContent::Range,
+                         .edgeVoxels = edge,
+                         .layout = gridLayout(result.blocks, 32)},
+                        found_)
         .and_then([&](const SkipTexture& ranges) {
             return chebyshevOfPartitions(programs_, caps_, ranges, result.blocks, result.count,
                                          result.maps);
@@ -156,7 +155,7 @@ Result<void> GpuSkipBuilder::merge(const GpuPartitions& partitions, const BinSet
     const gl::StateGuard guard;
     const SkipLayout layout = freeLengthLayout(partitions.blocks);
     if (!into.texture) {
-        Result<SkipTexture> made = allocate("merged free lengths", layout, caps_);
+        Result<SkipTexture> made = allocateSkip("merged free lengths", layout, caps_);
         if (!made) {
             return tl::unexpected(made.error());
         }
@@ -168,7 +167,7 @@ Result<void> GpuSkipBuilder::merge(const GpuPartitions& partitions, const BinSet
         return tl::unexpected(program.error());
     }
     gl::BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, partitions.maps.id());
-    bindOutput(into.texture, 0, GL_R32UI);
+    bindOutput(into.texture, GL_R32UI);
     gl::Uniform4uiv((*program)->uniform("partitionSet"), 2, set.data());
     setUniform(**program, "blocks", partitions.blocks);
     runPerTexel(**program, layout.texels);
@@ -182,10 +181,6 @@ void GpuSkipBuilder::forget() {
 
 std::int64_t partitionBytes(glm::ivec3 dims, const SkipOptions& options) {
     return freeLengthLayout(blocksOf(dims, options.blockEdgeVoxels)).bytes() * options.partitions;
-}
-
-int octreeLevels(glm::ivec3 dims, const SkipOptions& options) {
-    return keptLevels(blocksOf(dims, options.blockEdgeVoxels), options.initialLevel);
 }
 
 } // namespace slabcast

@@ -66,7 +66,4 @@ private:
 /// What partitioned maps take on the GPU, known before they are built.
 std::int64_t partitionBytes(glm::ivec3 dims, const SkipOptions& options);
 
-/// Levels of an octree over a volume: leaves, and what an initial level leaves of those above.
-int octreeLevels(glm::ivec3 dims, const SkipOptions& options);
-
 } // namespace slabcast

@@ -1,7 +1,6 @@
 #include "core/skip/gpu_built_skip.h"
 
-#include <chrono>
-
+#include "core/base/stopwatch.h"
 #include "core/skip/gpu_download.h"
 
 namespace slabcast {
@@ -39,9 +38,9 @@ struct Building {
         if (!texture) {
             return tl::unexpected(texture.error());
         }
+        const glm::ivec3 leaves = blocksOf(voxels.dims, options.blockEdgeVoxels);
         Result<Octree> read = downloadOctree(*texture, content, bits, options.blockEdgeVoxels,
-                                             blocksOf(voxels.dims, options.blockEdgeVoxels),
-                                             octreeLevels(voxels.dims, options));
+                                             leaves, keptLevels(leaves, options.initialLevel));
         return std::move(read).map([&](Octree tree) {
             return Made{std::move(*texture), std::move(tree)};
         });
@@ -105,7 +104,7 @@ Result<GpuBuiltSkip> buildSkipOnGpu(GpuSkipBuilder& builder, const GpuVoxels& vo
     if (Result<void> ok = check(options); !ok) {
         return tl::unexpected(ok.error());
     }
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     Result<Made> made = Building{builder, voxels, source, options}.make();
     if (!made) {
         return tl::unexpected(made.error());
@@ -113,8 +112,7 @@ Result<GpuBuiltSkip> buildSkipOnGpu(GpuSkipBuilder& builder, const GpuVoxels& vo
     GpuBuiltSkip built{asBuilt(options, std::move(made->data), source.visibility),
                        std::move(made->texture)};
     built.skip.onGpu = true;
-    built.skip.buildMs =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    built.skip.buildMs = watch.ms();
     return built;
 }
 

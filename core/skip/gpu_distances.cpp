@@ -24,11 +24,22 @@ Result<void> run(BuildPrograms& programs, const BuildPass& pass, const BytePass&
         return tl::unexpected(program.error());
     }
     bindInput(0, GL_TEXTURE_3D, textures.from);
-    bindOutput(textures.to, 0, GL_R32UI);
+    bindOutput(textures.to, GL_R32UI);
     setUniform(**program, "blocks", blocks);
     setUniform(**program, "firstPartition", firstPartition);
     runPerTexel(**program, texels);
     return {};
+}
+
+/// A texture of free lengths, with what fill(texture, texels) writes to it.
+template <class Fill>
+Result<SkipTexture> filled(glm::ivec3 blocks, const gl::Caps& caps, Fill fill) {
+    const SkipLayout layout = freeLengthLayout(blocks);
+    Result<SkipTexture> counts = allocateSkip("free lengths", layout, caps);
+    if (!counts) {
+        return counts;
+    }
+    return fill(counts->texture, layout.texels).map([&] { return std::move(*counts); });
 }
 
 /// Per count the least square that gives it, by the CPU's own arithmetic; no square gives 0.
@@ -74,7 +85,7 @@ Result<void> finishRows(BuildPrograms& programs, const EuclidTextures& textures,
         return tl::unexpected(y.error());
     }
     bindInput(0, GL_TEXTURE_3D, textures.alongX);
-    bindOutput(textures.squares, 0, GL_RGBA32UI);
+    bindOutput(textures.squares, GL_RGBA32UI);
     runPerTexel(**y, texels);
     const auto z = useEuclid(programs, euclidZPass(), blocks, units, firstRow);
     if (!z) {
@@ -83,7 +94,7 @@ Result<void> finishRows(BuildPrograms& programs, const EuclidTextures& textures,
     bindInput(0, GL_TEXTURE_3D, textures.squares);
     bindInput(1, GL_TEXTURE_2D, textures.countStarts);
     bindInput(2, GL_TEXTURE_3D, textures.alongX);
-    bindOutput(textures.counts, 0, GL_R32UI);
+    bindOutput(textures.counts, GL_R32UI);
     runPerTexel(**z, texels);
     return {};
 }
@@ -92,31 +103,22 @@ Result<void> finishRows(BuildPrograms& programs, const EuclidTextures& textures,
 
 Result<SkipTexture> blocksFromMarks(BuildPrograms& programs, const gl::Caps& caps,
                                     const SkipTexture& marks, glm::ivec3 blocks) {
-    const SkipLayout layout = freeLengthLayout(blocks);
-    Result<SkipTexture> counts = allocate("blocks", layout, caps);
-    if (!counts) {
-        return counts;
-    }
-    return run(programs, blocksPass(), {marks.texture, counts->texture}, blocks, layout.texels)
-        .map([&] { return std::move(*counts); });
+    return filled(blocks, caps, [&](const gl::Texture& counts, glm::ivec3 texels) {
+        return run(programs, blocksPass(), {marks.texture, counts}, blocks, texels);
+    });
 }
 
 Result<SkipTexture> chebyshevFromMarks(BuildPrograms& programs, const gl::Caps& caps,
-                                       const SkipTexture& marks, glm::ivec3 blocks) {
-    const SkipLayout layout = freeLengthLayout(blocks);
-    Result<SkipTexture> counts = allocate("free lengths", layout, caps);
-    if (!counts) {
-        return counts;
-    }
-    // There and back and there again.
-    const BytePass there{marks.texture, counts->texture};
-    const BytePass back{counts->texture, marks.texture};
-    return run(programs, alongXPass(false), there, blocks, layout.texels)
-        .and_then(
-            [&] { return run(programs, chebyshevPass(1, false), back, blocks, layout.texels); })
-        .and_then(
-            [&] { return run(programs, chebyshevPass(2, false), there, blocks, layout.texels); })
-        .map([&] { return std::move(*counts); });
+                                       SkipTexture marks, glm::ivec3 blocks) {
+    return filled(blocks, caps, [&](const gl::Texture& counts, glm::ivec3 texels) {
+        // There and back and there again.
+        const BytePass there{marks.texture, counts};
+        const BytePass back{counts, marks.texture};
+        return run(programs, alongXPass(false), there, blocks, texels)
+            .and_then([&] { return run(programs, chebyshevPass(1, false), back, blocks, texels); })
+            .and_then(
+                [&] { return run(programs, chebyshevPass(2, false), there, blocks, texels); });
+    });
 }
 
 Result<SkipTexture> proximityFromMarks(BuildPrograms& programs, const gl::Caps& caps,
@@ -128,9 +130,9 @@ Result<SkipTexture> proximityFromMarks(BuildPrograms& programs, const gl::Caps& 
     wide.bits = 128;
     const std::int64_t rowBytes = std::int64_t(wide.texels.x) * wide.texels.z * 16;
     wide.texels.y = int(std::clamp<std::int64_t>(kScratchBytes / rowBytes, 1, layout.texels.y));
-    Result<SkipTexture> squares = allocate("squared lengths", wide, caps);
-    Result<SkipTexture> alongX = allocate("lengths along x", layout, caps);
-    Result<SkipTexture> counts = allocate("free lengths", layout, caps);
+    Result<SkipTexture> squares = allocateSkip("squared lengths", wide, caps);
+    Result<SkipTexture> alongX = allocateSkip("lengths along x", layout, caps);
+    Result<SkipTexture> counts = allocateSkip("free lengths", layout, caps);
     const std::array starts = countStarts(units);
     const Result<gl::Texture> startTexture =
         upload2d("count starts", {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, GL_NEAREST, 4},
@@ -166,8 +168,8 @@ Result<void> chebyshevOfPartitions(BuildPrograms& programs, const gl::Caps& caps
     const int together = int(std::clamp<std::int64_t>(most, 1, count));
     SkipLayout stacked = map;
     stacked.texels.z *= together;
-    const Result<SkipTexture> alongX = allocate("lengths along x", stacked, caps);
-    const Result<SkipTexture> inPlane = allocate("lengths in the plane", stacked, caps);
+    const Result<SkipTexture> alongX = allocateSkip("lengths along x", stacked, caps);
+    const Result<SkipTexture> inPlane = allocateSkip("lengths in the plane", stacked, caps);
     if (!alongX || !inPlane) {
         return tl::unexpected(alongX ? inPlane.error() : alongX.error());
     }

@@ -15,9 +15,9 @@ Result<SkipTexture> blocksFromMarks(BuildPrograms& programs, const gl::Caps& cap
                                     const SkipTexture& marks, glm::ivec3 blocks);
 
 /// The closest site along a line is looked for from each block outwards, as far as it may still
-/// count. `marks` serve as scratch.
+/// count. The marks serve as scratch.
 Result<SkipTexture> chebyshevFromMarks(BuildPrograms& programs, const gl::Caps& caps,
-                                       const SkipTexture& marks, glm::ivec3 blocks);
+                                       SkipTexture marks, glm::ivec3 blocks);
 
 /// In the integers of the transform on the CPU, and with its counts. `found`: whether any block is
 /// occupied.

@@ -9,93 +9,89 @@ namespace slabcast {
 
 namespace {
 
-/// Components of one level's texels, four to each, x fastest: what integer targets are always read
-/// as.
-Result<std::vector<glm::uvec4>> readLevel(const gl::Texture& texture, const SkipLayout& layout,
-                                          int level) {
-    const glm::ivec3 texels = layout.texelsOf(level);
-    const std::int64_t perSlice = std::int64_t(texels.x) * texels.y;
-    std::vector<glm::uvec4> components(perSlice * texels.z);
+/// The words of a texture's texels, x fastest: of each as many as it holds of a node, or one of
+/// several nodes. Integer targets are always read as four components, a slice at a time here.
+Result<std::vector<std::uint32_t>> readTexels(const gl::Texture& texture,
+                                              const SkipLayout& layout) {
+    const glm::ivec3 texels = layout.texels;
+    std::vector<glm::uvec4> slice(std::size_t(texels.x) * texels.y);
+    std::vector<std::uint32_t> words;
+    words.reserve(slice.size() * texels.z * layout.wordsPerTexel());
     for (int z = 0; z < texels.z; ++z) {
-        gl::FramebufferTextureLayer(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture.id(), level,
-                                    z);
+        gl::FramebufferTextureLayer(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture.id(), 0, z);
         if (gl::CheckFramebufferStatus(GL_READ_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
             return fail(ErrorCode::DeviceUnsupported,
                         "the device does not read slices of skip textures; build on the CPU");
         }
-        gl::ReadPixels(0, 0, texels.x, texels.y, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
-                       components.data() + z * perSlice);
-    }
-    return components;
-}
-
-/// Calls read(texture) with the levels to come from its slices.
-template <class Read>
-auto withReadTarget(Read read) {
-    const gl::StateGuard guard;
-    gl::StateGuard::usePlainPixelTransfer();
-    gl::takeError();
-    gl::MemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT);
-    const gl::Framebuffer target = gl::Framebuffer::make("skip download");
-    gl::BindFramebuffer(GL_READ_FRAMEBUFFER, target.id());
-    auto result = read();
-    const Result<void> error = takeUploadError("a downloaded skip structure");
-    return error ? result : decltype(result)(tl::unexpected(error.error()));
-}
-
-/// Word w of a node, from its texel's components.
-std::uint32_t wordOf(const glm::uvec4& texel, const SkipLayout& layout, int x, int w) {
-    if (layout.bits < 32) {
-        return texel.x >> (x % layout.perTexel * layout.bits) & ((1U << layout.bits) - 1U);
-    }
-    return layout.bits == 64 ? texel[2 * w] | texel[2 * w + 1] << 16 : texel[w];
-}
-
-/// The words of nodes, without padding.
-std::vector<std::uint32_t> unpacked(const std::vector<glm::uvec4>& components,
-                                    const SkipLayout& layout, int level, glm::ivec3 nodes) {
-    const glm::ivec3 texels = layout.texelsOf(level);
-    std::vector<std::uint32_t> words;
-    words.reserve(std::size_t(nodes.x) * nodes.y * nodes.z * layout.wordsPerTexel());
-    for (int z = 0; z < nodes.z; ++z) {
-        for (int y = 0; y < nodes.y; ++y) {
-            const glm::uvec4* row = components.data() + (std::int64_t(z) * texels.y + y) * texels.x;
-            for (int x = 0; x < nodes.x; ++x) {
-                for (int w = 0; w < layout.wordsPerTexel(); ++w) {
-                    words.push_back(wordOf(row[x / layout.perTexel], layout, x, w));
-                }
+        gl::ReadPixels(0, 0, texels.x, texels.y, GL_RGBA_INTEGER, GL_UNSIGNED_INT, slice.data());
+        for (const glm::uvec4& texel : slice) {
+            for (int w = 0; w < layout.wordsPerTexel(); ++w) {
+                words.push_back(layout.bits == 64 ? texel[2 * w] | texel[2 * w + 1] << 16
+                                                  : texel[w]);
             }
         }
     }
     return words;
 }
 
+/// The words of a level's nodes, without what fills up its rows.
+std::vector<std::uint32_t> nodesOf(const std::vector<std::uint32_t>& texels,
+                                   const SkipLayout& layout, const SkipLevel& level,
+                                   glm::ivec3 nodes) {
+    const int perNode = layout.wordsPerTexel();
+    const std::uint32_t mask = ~0U >> (32 - std::min(layout.bits, 32));
+    const std::uint32_t* row = texels.data() + std::int64_t(level.first) * perNode;
+    std::vector<std::uint32_t> words;
+    words.reserve(std::size_t(nodes.x) * nodes.y * nodes.z * perNode);
+    for (std::int64_t rows = std::int64_t(nodes.y) * nodes.z; rows > 0; --rows) {
+        if (layout.perTexel == 1) {
+            words.insert(words.end(), row, row + nodes.x * perNode);
+        } else {
+            for (int x = 0; x < nodes.x; ++x) {
+                words.push_back(row[x / layout.perTexel] >> (x % layout.perTexel * layout.bits) &
+                                mask);
+            }
+        }
+        row += std::int64_t(level.texels.x) * perNode;
+    }
+    return words;
+}
+
 } // namespace
+
+Result<std::vector<std::uint32_t>> downloadTexels(const SkipTexture& structure,
+                                                  const SkipLayout& layout) {
+    const gl::StateGuard guard;
+    gl::StateGuard::usePlainPixelTransfer();
+    gl::takeError();
+    gl::MemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT);
+    const gl::Framebuffer target = gl::Framebuffer::make("skip download");
+    gl::BindFramebuffer(GL_READ_FRAMEBUFFER, target.id());
+    auto words = readTexels(structure.texture, layout);
+    const Result<void> error = takeUploadError("a downloaded skip structure");
+    return error ? words : tl::unexpected(error.error());
+}
 
 Result<FreeLengths> downloadFreeLengths(const SkipTexture& lengths, glm::ivec3 blocks,
                                         int blockEdgeVoxels, double quantumMm) {
     const SkipLayout layout = freeLengthLayout(blocks);
-    return withReadTarget([&] { return readLevel(lengths.texture, layout, 0); })
-        .map([&](const std::vector<glm::uvec4>& components) {
-            const std::vector<std::uint32_t> words = unpacked(components, layout, 0, blocks);
-            FreeLengths result{blocks, blockEdgeVoxels, quantumMm, {words.begin(), words.end()}, 0};
-            result.occupiedBlocks = std::count(words.begin(), words.end(), 0U);
-            return result;
-        });
+    return downloadTexels(lengths, layout).map([&](const std::vector<std::uint32_t>& texels) {
+        const std::vector<std::uint32_t> counts =
+            nodesOf(texels, layout, layout.levels.front(), blocks);
+        FreeLengths result{blocks, blockEdgeVoxels, quantumMm, {counts.begin(), counts.end()}, 0};
+        result.occupiedBlocks = std::count(counts.begin(), counts.end(), 0U);
+        return result;
+    });
 }
 
 Result<Octree> downloadOctree(const SkipTexture& octree, NodeContent content, int bitsPerNode,
                               int leafEdgeVoxels, glm::ivec3 leaves, int levels) {
     const SkipLayout layout = octreeLayout(leaves, levels, bitsPerNode);
-    return withReadTarget([&]() -> Result<Octree> {
+    return downloadTexels(octree, layout).map([&](const std::vector<std::uint32_t>& texels) {
         Octree result{content, leafEdgeVoxels, bitsPerNode, {}};
         for (int level = 0; level < levels; ++level) {
-            const auto components = readLevel(octree.texture, layout, level);
-            if (!components) {
-                return tl::unexpected(components.error());
-            }
             const glm::ivec3 nodes = blocksOf(leaves, 1 << level);
-            result.levels.push_back({nodes, unpacked(*components, layout, level, nodes)});
+            result.levels.push_back({nodes, nodesOf(texels, layout, layout.levels[level], nodes)});
         }
         return result;
     });

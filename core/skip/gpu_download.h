@@ -8,6 +8,10 @@ namespace slabcast {
 /// state as they found it. Fail: DeviceUnsupported (a texture that cannot be read), Internal.
 /// Tested by: gpu_builder_gl_test.cpp
 
+/// The words of all texels, x fastest, as the layout has them; what no level holds is undefined.
+Result<std::vector<std::uint32_t>> downloadTexels(const SkipTexture& structure,
+                                                  const SkipLayout& layout);
+
 /// Of that many blocks. `quantumMm`: of Euclidean lengths, else 0.
 Result<FreeLengths> downloadFreeLengths(const SkipTexture& lengths, glm::ivec3 blocks,
                                         int blockEdgeVoxels, double quantumMm = 0.0);

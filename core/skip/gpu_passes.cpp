@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "core/frame/shader_text.h"
+#include "core/gl/shader_text.h"
 
 namespace slabcast {
 
@@ -48,6 +48,8 @@ BuildPass leavesPass(TexelCoding coding, NodeContent content, bool ofCodes, int 
                    {{"CODE_FILE", code.file},
                     {"CONTENT", text(static_cast<int>(content))},
                     {"OF_CODES", text(ofCodes)},
+                    {"TILE_VOXELS", text(kTileVoxels)},
+                    {"THREADS", text(kLeavesThreads)},
                     {"EDGE", text(edge)},
                     {"BITS", text(bits)},
                     {"NODE_FORMAT", nodeFormat(bits)}}};
@@ -157,8 +159,8 @@ void bindInput(GLuint unit, GLenum target, const gl::Texture& texture) {
     gl::ActiveTexture(GL_TEXTURE0);
 }
 
-void bindOutput(const gl::Texture& texture, int level, GLenum format) {
-    gl::BindImageTexture(0, texture.id(), level, GL_TRUE, 0, GL_WRITE_ONLY, format);
+void bindOutput(const gl::Texture& texture, GLenum format) {
+    gl::BindImageTexture(0, texture.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, format);
 }
 
 void setUniform(const gl::Program& program, const char* name, int value) {

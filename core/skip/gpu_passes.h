@@ -28,6 +28,17 @@ struct BuildPass {
     }
 };
 
+/// What makes leaves looks at tiles of so many voxels along each edge, by so many invocations.
+constexpr int kTileVoxels = 8;
+constexpr int kLeavesThreads = 128;
+
+/// Words of a tile's voxels, two before it and two after it, and of the cells between them.
+constexpr int leavesSharedBytes() {
+    constexpr int kVoxels = kTileVoxels + 4;
+    constexpr int kCells = kVoxels - 1;
+    return 4 * (kVoxels * kVoxels * kVoxels + kCells * kCells * kCells);
+}
+
 /// What leaves hold: `ofCodes` of codes themselves, else of ranges from a table by code. Leaf edges
 /// of 1, 2, 4 and 8.
 BuildPass leavesPass(TexelCoding coding, NodeContent content, bool ofCodes, int edge, int bits);
@@ -58,7 +69,7 @@ private:
 /// What passes share. A pass reads textures at units from 0 on and writes image 0, or storage
 /// buffers.
 void bindInput(GLuint unit, GLenum target, const gl::Texture& texture);
-void bindOutput(const gl::Texture& texture, int level, GLenum format);
+void bindOutput(const gl::Texture& texture, GLenum format);
 void setUniform(const gl::Program& program, const char* name, int value);
 void setUniform(const gl::Program& program, const char* name, glm::ivec3 value);
 

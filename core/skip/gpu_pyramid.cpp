@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <bit>
 
+#include "core/skip/skip_structure.h"
+
 namespace slabcast {
 
 namespace {
-
-constexpr int kTileVoxels = 8; // edge of what a workgroup looks at: also the longest leaf it makes
 
 constexpr TexelLayout kWordTable = {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, GL_NEAREST, 4};
 constexpr TexelLayout kFloatTable = {GL_R32F, GL_RED, GL_FLOAT, GL_NEAREST, 4};
@@ -20,10 +20,18 @@ Result<gl::Texture> uploadByCode(const char* label, const TexelLayout& layout,
     return upload2d(label, layout, {kRow, int(values.size()) / kRow}, values.data());
 }
 
-/// Writes level 0 of `nodes`, padding included. Contract: leaves of at most 8 voxels.
+void setLevel(const gl::Program& program, const char* texels, const char* address,
+              const SkipLevel& level) {
+    setUniform(program, texels, level.texels);
+    const glm::ivec4 a = level.address();
+    gl::Uniform4i(program.uniform(address), a.x, a.y, a.z, a.w);
+}
+
+/// Writes the first level of `nodes`. Contract: leaves of at most a tile.
 Result<void> writeLeaves(BuildPrograms& programs, const GpuVoxels& voxels, const RangeTable& table,
-                         const PyramidDesc& desc, const SkipLayout& layout,
-                         const gl::Texture& nodes, const gl::Buffer& found) {
+                         const PyramidDesc& desc, const gl::Texture& nodes,
+                         const gl::Buffer& found) {
+    const SkipLayout& layout = desc.layout;
     gl::Texture ranges;
     if (!table.words.empty()) {
         Result<gl::Texture> uploaded = uploadByCode("ranges of codes", kWordTable, table.words);
@@ -33,68 +41,77 @@ Result<void> writeLeaves(BuildPrograms& programs, const GpuVoxels& voxels, const
         ranges = std::move(*uploaded);
     }
     const Result<const gl::Program*> program = programs.use(
-        leavesPass(voxels.coding, desc.content, table.words.empty(), desc.edgeVoxels, desc.bits));
+        leavesPass(voxels.coding, desc.content, table.words.empty(), desc.edgeVoxels, layout.bits));
     if (!program) {
         return tl::unexpected(program.error());
     }
     bindInput(0, GL_TEXTURE_3D, gl::Texture::borrow(voxels.texture));
     bindInput(1, GL_TEXTURE_2D, ranges);
     bindInput(2, GL_TEXTURE_2D, voxels.codeStarts);
-    bindOutput(nodes, 0, texelLayoutOf(layout).internalFormat);
+    bindOutput(nodes, texelLayoutOf(layout).internalFormat);
     gl::BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, found.id());
     gl::Uniform2f((*program)->uniform("codeEstimate"), voxels.leastFloat, voxels.codesPerFloat);
     setUniform(**program, "dims", voxels.dims);
     setUniform(**program, "leaves", blocksOf(voxels.dims, desc.edgeVoxels));
+    setLevel(**program, "texels", "address", layout.levels.front());
     const int leaves = kTileVoxels / desc.edgeVoxels;
     const glm::ivec3 texelsPerGroup(std::max(1, leaves / layout.perTexel), leaves, leaves);
-    runGroups((layout.texels + texelsPerGroup - 1) / texelsPerGroup);
+    runGroups((layout.levels.front().texels + texelsPerGroup - 1) / texelsPerGroup);
     return {};
 }
 
-/// Joins a level's nodes to those of another, of half as many texels along each axis.
-Result<void> writeParents(BuildPrograms& programs, const PyramidDesc& desc,
-                          const gl::Texture& children, int childLevel, const SkipLayout& layout,
-                          const gl::Texture& nodes, int level) {
-    const Result<const gl::Program*> program = programs.use(parentsPass(desc.content, layout.bits));
+/// A level, and the texture that it lies in.
+struct PlacedLevel {
+    const gl::Texture& texture;
+    const SkipLevel& level;
+};
+
+/// Joins a level's nodes to those of the level above.
+Result<void> writeParents(BuildPrograms& programs, NodeContent content, const SkipLayout& layout,
+                          const PlacedLevel& children, const PlacedLevel& nodes) {
+    const Result<const gl::Program*> program = programs.use(parentsPass(content, layout.bits));
     if (!program) {
         return tl::unexpected(program.error());
     }
-    bindInput(0, GL_TEXTURE_3D, children);
-    bindOutput(nodes, level, texelLayoutOf(layout).internalFormat);
-    setUniform(**program, "childLevel", childLevel);
-    runPerTexel(**program, layout.texelsOf(level));
+    bindInput(0, GL_TEXTURE_3D, children.texture);
+    bindOutput(nodes.texture, texelLayoutOf(layout).internalFormat);
+    setLevel(**program, "childTexels", "childAddress", children.level);
+    setLevel(**program, "texels", "address", nodes.level);
+    runPerTexel(**program, nodes.level.texels);
     return {};
 }
 
-/// The levels above level 0.
-Result<void> writeLevels(BuildPrograms& programs, const PyramidDesc& desc, const SkipLayout& layout,
+/// The levels above the first one.
+Result<void> writeLevels(BuildPrograms& programs, const PyramidDesc& desc,
                          const gl::Texture& nodes) {
+    const std::vector<SkipLevel>& levels = desc.layout.levels;
     Result<void> done;
-    for (int level = 1; level < layout.levels && done; ++level) {
-        done = writeParents(programs, desc, nodes, level - 1, layout, nodes, level);
+    for (std::size_t i = 1; i < levels.size() && done; ++i) {
+        done = writeParents(programs, desc.content, desc.layout, {nodes, levels[i - 1]},
+                            {nodes, levels[i]});
     }
     return done;
 }
 
-/// Leaves that several tiles make up: a pyramid of its own below them, which is padded so that its
-/// next level would be level 0 of `nodes`.
+/// Leaves that several tiles make up: a pyramid of its own below them, whose next level would be
+/// the first of `nodes`.
 Result<void> joinLeaves(BuildPrograms& programs, const gl::Caps& caps, const GpuVoxels& voxels,
-                        const RangeTable& table, const PyramidDesc& desc, const SkipLayout& layout,
-                        const gl::Texture& nodes, const gl::Buffer& found) {
+                        const RangeTable& table, const PyramidDesc& desc, const gl::Texture& nodes,
+                        const gl::Buffer& found) {
     const int below = std::countr_zero(unsigned(desc.edgeVoxels / kTileVoxels));
-    PyramidDesc fine = desc;
-    fine.edgeVoxels = kTileVoxels;
-    SkipLayout fineLayout =
-        octreeLayout(blocksOf(voxels.dims, kTileVoxels), below + layout.levels, desc.bits);
-    fineLayout.levels = below;
-    Result<SkipTexture> leaves = allocate("leaves", fineLayout, caps);
+    const PyramidDesc fine{
+        desc.content, kTileVoxels,
+        octreeLayout(blocksOf(voxels.dims, kTileVoxels), below, desc.layout.bits)};
+    const Result<SkipTexture> leaves = allocateSkip("leaves", fine.layout, caps);
     if (!leaves) {
         return tl::unexpected(leaves.error());
     }
-    return writeLeaves(programs, voxels, table, fine, fineLayout, leaves->texture, found)
-        .and_then([&] { return writeLevels(programs, fine, fineLayout, leaves->texture); })
+    return writeLeaves(programs, voxels, table, fine, leaves->texture, found)
+        .and_then([&] { return writeLevels(programs, fine, leaves->texture); })
         .and_then([&] {
-            return writeParents(programs, desc, leaves->texture, below - 1, layout, nodes, 0);
+            return writeParents(programs, desc.content, desc.layout,
+                                {leaves->texture, fine.layout.levels.back()},
+                                {nodes, desc.layout.levels.front()});
         });
 }
 
@@ -140,31 +157,17 @@ RangeTable rangesOf(const ValueBins& bins) {
 Result<SkipTexture> buildPyramid(BuildPrograms& programs, const gl::Caps& caps,
                                  const GpuVoxels& voxels, const RangeTable& table,
                                  const PyramidDesc& desc, const gl::Buffer& found) {
-    const SkipLayout layout =
-        octreeLayout(blocksOf(voxels.dims, desc.edgeVoxels), desc.levels, desc.bits);
-    Result<SkipTexture> nodes = allocate("skip nodes", layout, caps);
+    Result<SkipTexture> nodes = allocateSkip("skip nodes", desc.layout, caps);
     if (!nodes) {
         return nodes;
     }
     const Result<void> leaves =
         desc.edgeVoxels <= kTileVoxels
-            ? writeLeaves(programs, voxels, table, desc, layout, nodes->texture, found)
-            : joinLeaves(programs, caps, voxels, table, desc, layout, nodes->texture, found);
-    return leaves.and_then([&] { return writeLevels(programs, desc, layout, nodes->texture); })
-        .map([&] { return std::move(*nodes); });
-}
-
-Result<SkipTexture> allocate(const char* label, const SkipLayout& layout, const gl::Caps& caps) {
-    return checkFits(layout, caps)
-        .and_then(
-            [&] { return allocate3d(label, texelLayoutOf(layout), layout.texels, layout.levels); })
-        .map([&](gl::Texture&& texture) {
-            return SkipTexture{std::move(texture), layout.bytes()};
-        });
-}
-
-glm::ivec3 blocksOf(glm::ivec3 dims, int edgeVoxels) {
-    return (dims + edgeVoxels - 1) / edgeVoxels;
+            ? writeLeaves(programs, voxels, table, desc, nodes->texture, found)
+            : joinLeaves(programs, caps, voxels, table, desc, nodes->texture, found);
+    return leaves.and_then([&] { return writeLevels(programs, desc, nodes->texture); }).map([&] {
+        return std::move(*nodes);
+    });
 }
 
 } // namespace slabcast

@@ -35,8 +35,7 @@ RangeTable rangesOf(const ValueBins& bins);            // the bin, twice
 struct PyramidDesc {
     NodeContent content = NodeContent::Occupied;
     int edgeVoxels = 4; // of a leaf, a power of two
-    int levels = 1;
-    int bits = 8;
+    SkipLayout layout;
 };
 
 /// Leaves, and levels above them, on the GPU. Leaves of more than 8 voxels are joined from smaller
@@ -45,10 +44,5 @@ struct PyramidDesc {
 Result<SkipTexture> buildPyramid(BuildPrograms& programs, const gl::Caps& caps,
                                  const GpuVoxels& voxels, const RangeTable& table,
                                  const PyramidDesc& desc, const gl::Buffer& found);
-
-/// A texture of that layout, without content. Fails: VolumeTooLarge, DeviceOutOfMemory.
-Result<SkipTexture> allocate(const char* label, const SkipLayout& layout, const gl::Caps& caps);
-
-glm::ivec3 blocksOf(glm::ivec3 dims, int edgeVoxels);
 
 } // namespace slabcast

@@ -1,6 +1,7 @@
 #include "core/skip/grid_rebuild.h"
 
 #include <algorithm>
+#include <mutex>
 #include <thread>
 
 #include "core/base/parallel.h"
@@ -14,25 +15,35 @@ namespace {
 
 using Clock = GridRebuild::Clock;
 
-/// Runs items of a stage from `from` on; returns the first that was not run. Threads are called
-/// only where there is time for more than one item.
-std::int64_t runItems(const BuildStage& stage, std::int64_t from, Clock::time_point deadline) {
+/// Runs items of a stage from `from` on, one at least; returns the first that was not run. A
+/// further one is begun where it is over by the deadline if it takes no longer than the longest
+/// one so far. Threads are called only where there is time for more than one item.
+std::int64_t runItems(const BuildStage& stage, std::int64_t from, Clock::time_point deadline,
+                      Clock::duration& longestSoFar) {
     std::atomic<std::int64_t> next{from};
-    const auto runOne = [&] {
+    const auto runOne = [&](Clock::duration& longest) {
+        const auto start = Clock::now();
         const std::int64_t item = next.fetch_add(1);
-        if (item < stage.items) {
-            stage.run(item, item + 1);
+        if (item >= stage.items) {
+            return false;
         }
-        return item + 1 < stage.items;
+        stage.run(item, item + 1);
+        const auto end = Clock::now();
+        longest = std::max(longest, end - start);
+        return item + 1 < stage.items && end + longest < deadline;
     };
-    const auto runUntilDeadline = [&](std::int64_t, std::int64_t) {
-        while (Clock::now() < deadline && runOne()) {
+    std::mutex joining;
+    const auto runWhileThereIsTime = [&](std::int64_t, std::int64_t) {
+        Clock::duration longest{};
+        while (runOne(longest)) {
         }
+        const std::scoped_lock lock(joining);
+        longestSoFar = std::max(longestSoFar, longest);
     };
-    if (runOne() && Clock::now() < deadline) {
+    if (runOne(longestSoFar)) {
         const std::int64_t cores = std::max(1U, std::thread::hardware_concurrency());
         parallelFor(stage.inOrder ? 1 : std::min(cores, stage.items - from - 1), 1,
-                    runUntilDeadline);
+                    runWhileThereIsTime);
     }
     return std::min<std::int64_t>(next, stage.items);
 }
@@ -76,9 +87,8 @@ void GridRebuild::markAll(std::uint8_t freeByte) {
 // became of the others.
 void GridRebuild::markChanged(std::uint8_t freeByte) {
     const FreeLengths& before = *earlier_.grid;
-    grid_ = {.blocks = before.blocks,
-             .blockEdgeVoxels = before.blockEdgeVoxels,
-             .counts = std::vector<std::uint8_t>(before.counts.size())};
+    grid_ = {.blocks = before.blocks, .blockEdgeVoxels = before.blockEdgeVoxels};
+    stages_.push_back(roomFor(grid_));
     const std::int64_t perSlice = blocksPerSlice(grid_);
     stages_.push_back({grid_.blocks.z, [=, this, &before](std::int64_t begin, std::int64_t end) {
                            std::transform(before.counts.begin() + begin * perSlice,
@@ -147,12 +157,14 @@ bool GridRebuild::work(Clock::time_point deadline) {
     };
     bool ranOne = false;
     while (stage_ < stagesNeeded() && (!ranOne || Clock::now() < deadline)) {
-        item_ = runItems(stages_[stage_], item_, deadline);
+        item_ = runItems(stages_[stage_], item_, deadline, longestItem_);
         ranOne = true;
-        if (item_ == stages_[stage_].items) {
-            item_ = 0;
-            ++stage_;
+        if (item_ < stages_[stage_].items) {
+            break; // no time for another
         }
+        item_ = 0;
+        longestItem_ = {};
+        ++stage_;
     }
     return stage_ >= stagesNeeded();
 }

@@ -52,8 +52,8 @@ public:
     GridRebuild(const GridRebuild&) = delete;
     GridRebuild& operator=(const GridRebuild&) = delete;
 
-    /// Runs items on all cores until the deadline has passed, one at least, and ends one item per
-    /// core after it at the latest. Whether all is done.
+    /// Runs items on all cores, one at least; begins no other that would be late if it took as
+    /// long as the longest of its stage so far. Whether all is done.
     bool work(Clock::time_point deadline);
 
     /// The earlier grid itself where no block differs. Contract: all is done; asked once.
@@ -74,6 +74,7 @@ private:
     std::atomic<bool> differs_;
     std::size_t stage_ = 0;
     std::int64_t item_ = 0;
+    Clock::duration longestItem_{}; // of the stage
 };
 
 } // namespace slabcast

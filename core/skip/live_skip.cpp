@@ -1,11 +1,13 @@
 #include "core/skip/live_skip.h"
 
 #include <algorithm>
-#include <bit>
 #include <string>
+#include <utility>
 
+#include "core/base/stopwatch.h"
 #include "core/skip/minmax_octree.h"
 #include "core/skip/occupancy.h"
+#include "core/skip/skip_texture.h"
 
 namespace slabcast {
 
@@ -19,10 +21,6 @@ constexpr int kRegionLevel = 3;
 /// The settled structure stays for a TF that shows less, down to this share of the occupied blocks
 /// that it was built for. Below, an octree skips more, though it takes a third longer per block.
 constexpr double kTightEnough = 0.75;
-
-double msSince(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 bool hasStructure(const SkipOptions& options) {
     return options.structure != SkipStructure::None;
@@ -69,7 +67,7 @@ Result<OctreeLevel> rangesOf(const Octree* minMax, const TexelCodes& codes, int 
 } // namespace
 
 const char* name(LiveProgress progress) {
-    constexpr const char* kNames[] = {"settled", "waiting", "building", "swapped"};
+    constexpr const char* kNames[] = {"settled", "waiting", "building", "incoming", "swapped"};
     return kNames[static_cast<std::size_t>(progress)];
 }
 
@@ -78,7 +76,7 @@ Result<LiveSkip> LiveSkip::start(LiveSource source, const LiveOptions& options,
     if (Result<void> ok = checkServes(options); !ok) {
         return tl::unexpected(ok.error());
     }
-    const auto start = Clock::now();
+    const Stopwatch watch;
     LiveSkip live;
     live.source_ = std::move(source);
     live.options_ = options;
@@ -92,11 +90,10 @@ Result<LiveSkip> LiveSkip::start(LiveSource source, const LiveOptions& options,
     live.visibility_ = std::make_shared<const CellVisibility>(std::move(visibility));
     if (hasStructure(options.settled) && present.options == options.settled) {
         live.settled_ = present;
-        live.settledShown_ = live.shown_;
         live.settledFraction_ = live.always_.occupiedFraction;
         live.settledServes_ = true;
     }
-    live.startMs_ = msSince(start);
+    live.startMs_ = watch.ms();
     return live;
 }
 
@@ -131,16 +128,17 @@ Result<void> LiveSkip::build(const CellVisibility& visibility, const BuiltSkip& 
 
 void LiveSkip::edit(CellVisibility visibility) {
     rebuild_.reset();
+    incoming_ = noSkip();
     framesSinceEdit_ = 0;
     shown_ = visibleValues(visibility);
     visibility_ = std::make_shared<const CellVisibility>(std::move(visibility));
-    settledServes_ = settled_.exists() && settledShown_ == shown_;
+    settledServes_ = settled_.exists() && settled_.shown == shown_;
     if (settledServes_) {
         return;
     }
     always_ = underTransfer(always_, *visibility_);
     // What was free then is free now.
-    settledServes_ = settled_.exists() && covers(settledShown_, shown_) &&
+    settledServes_ = settled_.exists() && covers(settled_.shown, shown_) &&
                      always_.occupiedFraction >= kTightEnough * settledFraction_;
 }
 
@@ -157,14 +155,15 @@ std::vector<LiveSkip> LiveSkip::eachServing() const {
                           std::make_shared<const FreeLengths>(FreeLengths{
                               .blocks = ranges_->nodes,
                               .blockEdgeVoxels = options_.settled.blockEdgeVoxels,
-                              .counts = std::vector<std::uint8_t>(ranges_->words.size(), 255)}));
+                              .counts = std::vector<std::uint8_t>(ranges_->words.size(), 255)}),
+                          VisibleValues());
         }
     }
     return each;
 }
 
 bool LiveSkip::wantsRebuild() const {
-    return hasStructure(options_.settled) && (!settled_.exists() || settledShown_ != shown_);
+    return hasStructure(options_.settled) && (!settled_.exists() || settled_.shown != shown_);
 }
 
 /// Where the octree shows that fewer blocks can have changed than there are. A block that two TFs
@@ -178,10 +177,10 @@ std::optional<ChangedRegions> LiveSkip::changedRegions() const {
     }
     NodeTest changed;
     if (octree->content == NodeContent::Bits) {
-        const BinSet bins = changedBins(*always_.bins, settledShown_, shown_);
+        const BinSet bins = changedBins(*always_.bins, settled_.shown, shown_);
         changed.words = {bins[0], bins[1], bins[2], bins[3]};
     } else {
-        const std::optional<CodeRange> codes = changedCodes(settledShown_, shown_);
+        const std::optional<CodeRange> codes = changedCodes(settled_.shown, shown_);
         SLABCAST_EXPECTS(codes.has_value(), options_.settled.blockEdgeVoxels);
         changed.words = {codes->least, codes->most, 0, 0};
     }
@@ -203,14 +202,28 @@ void LiveSkip::beginRebuild() {
 
 void LiveSkip::finishRebuild() {
     const std::shared_ptr<const FreeLengths> grid = rebuild_->finish();
-    if (grid != settled_.lengths) {
-        settled_ = builtSkip(options_.settled, grid);
+    rebuild_.reset();
+    rebuildMs_ = rebuildSoFarMs_;
+    if (grid == settled_.lengths) { // and its texture is there
+        incoming_ = settled_;
+        incoming_.shown = shown_;
+        framesToUpload_ = 0;
+    } else {
+        incoming_ = builtSkip(options_.settled, grid, shown_);
+        framesToUpload_ = (grid->blocks.z - 1) / slicesWithin(kUploadBytesPerFrame, grid->blocks);
     }
-    settled_.buildMs = rebuildMs_ = rebuildSoFarMs_;
-    settledShown_ = shown_;
+    incoming_.buildMs = rebuildMs_;
+}
+
+LiveProgress LiveSkip::handOver() {
+    if (framesToUpload_ > 0) {
+        --framesToUpload_;
+        return LiveProgress::Incoming;
+    }
+    settled_ = std::exchange(incoming_, noSkip());
     settledFraction_ = always_.occupiedFraction;
     settledServes_ = true;
-    rebuild_.reset();
+    return LiveProgress::Swapped;
 }
 
 LiveProgress LiveSkip::work(double budgetMs) {
@@ -224,18 +237,22 @@ LiveProgress LiveSkip::work(double budgetMs) {
     if (!(budgetMs > 0.0)) {
         return LiveProgress::Waiting;
     }
-    const auto start = Clock::now();
+    if (incoming_.exists()) {
+        return handOver();
+    }
+    const Stopwatch watch;
     const std::chrono::duration<double, std::milli> budget(std::min(budgetMs, 1e9));
+    const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(budget);
     if (!rebuild_) {
         beginRebuild();
     }
-    const bool done = rebuild_->work(start + std::chrono::duration_cast<Clock::duration>(budget));
-    rebuildSoFarMs_ += msSince(start);
+    const bool done = rebuild_->work(deadline);
+    rebuildSoFarMs_ += watch.ms();
     if (!done) {
         return LiveProgress::Building;
     }
     finishRebuild();
-    return LiveProgress::Swapped;
+    return handOver();
 }
 
 } // namespace slabcast

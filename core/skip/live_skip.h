@@ -43,10 +43,14 @@ enum class LiveProgress : std::uint8_t {
     Settled,  // nothing to do: the structure is the TF's own
     Waiting,  // for the hand to come to rest
     Building, // the settled structure is in the making
-    Swapped,  // it was finished in this call
+    Incoming, // it is finished, and its texture is being filled
+    Swapped,  // it serves from this call on
 };
 
 const char* name(LiveProgress progress);
+
+/// Of a finished structure's texture, for one frame to upload.
+constexpr std::int64_t kUploadBytesPerFrame = 1 << 20;
 
 /// Which structure serves while a TF changes again and again. At any moment current() is exact
 /// under the last TF: the settled structure where the TF shows nothing that it was not built for,
@@ -55,8 +59,8 @@ const char* name(LiveProgress progress);
 /// Not thread-safe; heavy steps use all cores inside. Tested by: live_skip_test.cpp
 class LiveSkip {
 public:
-    /// Builds the structure for all TFs, unless it is `present`; takes `present`, which is of the
-    /// TF of now, as the settled one where its options are. Cost: O(voxels).
+    /// Builds the structure for all TFs, unless it is `present`; takes `present`, which is right
+    /// under the TF of now, as the settled one where its options are. Cost: O(voxels).
     /// Fails: InvalidArgument (structures that cannot serve so), and as buildSkip().
     static Result<LiveSkip> start(LiveSource source, const LiveOptions& options,
                                   CellVisibility visibility, const BuiltSkip& present);
@@ -65,9 +69,8 @@ public:
     /// O(blocks x partitions).
     void edit(CellVisibility visibility);
 
-    /// Once a frame: rebuilds for about `budgetMs`, and one item per core longer at most, an item
-    /// being a slice of blocks. Nothing at 0; else one item at least. The call that begins also
-    /// makes room for the grid, at the pace of memory: O(blocks).
+    /// Once a frame: rebuilds for about `budgetMs`, but one item at least, which is a slice of
+    /// blocks; nothing at 0. What is finished serves once there were frames enough to upload it.
     LiveProgress work(double budgetMs);
 
     /// Of each structure that is used, as it is when that one serves, whether or not it is right
@@ -77,6 +80,8 @@ public:
     const BuiltSkip& current() const { return settledServes_ ? settled_ : always_; }
     const BuiltSkip& always() const { return always_; }   // of the TF of now, or of an earlier one
     const BuiltSkip& settled() const { return settled_; } // as well; may not exist
+    /// The next settled one, while its texture is being filled.
+    const BuiltSkip& incoming() const { return incoming_; }
     /// Whether what serves is all that can be had under this TF.
     bool isSettled() const { return !wantsRebuild(); }
     /// What start() took, and the last finished rebuilding, over all its calls of work().
@@ -91,15 +96,17 @@ private:
     std::optional<ChangedRegions> changedRegions() const;
     void beginRebuild();
     void finishRebuild();
+    LiveProgress handOver();
 
     LiveSource source_;
     LiveOptions options_;
     std::shared_ptr<const CellVisibility> visibility_; // of now
     VisibleValues shown_;                              // of now
     BuiltSkip always_;
-    BuiltSkip settled_{.options = {.structure = SkipStructure::None}};
-    VisibleValues settledShown_;   // what settled_ was built for
-    double settledFraction_ = 0.0; // that always_ found occupied then
+    BuiltSkip settled_ = noSkip();
+    double settledFraction_ = 0.0; // that always_ found occupied when settled_ was built
+    BuiltSkip incoming_ = noSkip();
+    int framesToUpload_ = 0; // before it serves
     bool settledServes_ = false;
     std::shared_ptr<const OctreeLevel> ranges_; // of the settled structure's blocks
     NotCopied<GridRebuild> rebuild_;

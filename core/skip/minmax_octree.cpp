@@ -105,7 +105,7 @@ std::vector<Code> pickOfSlab(const TexelCodes& codes, int edge, glm::ivec3 leave
 }
 
 Result<OctreeLevel> rangesOfLeaves(const TexelCodes& codes, int edge, const CancelToken* cancel) {
-    const glm::ivec3 leaves = (codes.dims + edge - 1) / edge;
+    const glm::ivec3 leaves = blocksOf(codes.dims, edge);
     const auto perSlice = std::int64_t(leaves.x) * leaves.y;
     OctreeLevel level{leaves, std::vector<std::uint32_t>(leaves.z * perSlice)};
     const auto reduceSlab = [&](std::int64_t begin, std::int64_t end) {

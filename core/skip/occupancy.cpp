@@ -18,6 +18,15 @@ Result<OctreeLevel> blockRanges(const TexelCodes& codes, int blockEdgeVoxels,
     });
 }
 
+BuildStage roomFor(FreeLengths& grid) {
+    const std::int64_t perSlice = std::int64_t(grid.blocks.x) * grid.blocks.y;
+    grid.counts.reserve(perSlice * grid.blocks.z);
+    const auto addSlices = [=, &grid](std::int64_t, std::int64_t end) {
+        grid.counts.resize(end * perSlice);
+    };
+    return {.items = grid.blocks.z, .run = addSlices, .inOrder = true};
+}
+
 // A block's range settles what its cells would one by one. If none of them is visible, each either
 // ends below the first visible table texel t that the block's least code can reach, or begins above
 // it: were it neither, it would reach t. The cell with the least code ends below; so do its
@@ -28,9 +37,7 @@ BuildStages occupancyStages(const OctreeLevel& ranges, int blockEdgeVoxels,
     const glm::ivec3 blocks = ranges.nodes;
     const std::int64_t perSlice = std::int64_t(blocks.x) * blocks.y;
     SLABCAST_EXPECTS(std::int64_t(ranges.words.size()) == perSlice * blocks.z, blocks.z);
-    grid = {.blocks = blocks,
-            .blockEdgeVoxels = blockEdgeVoxels,
-            .counts = std::vector<std::uint8_t>(ranges.words.size())};
+    grid = {.blocks = blocks, .blockEdgeVoxels = blockEdgeVoxels};
     const auto occupiedInSlice = std::make_shared<std::vector<std::int64_t>>(blocks.z);
     const auto markSlices = [=, &ranges, &visibility, &grid](std::int64_t begin, std::int64_t end) {
         for (std::int64_t z = begin; z < end; ++z) {
@@ -49,22 +56,7 @@ BuildStages occupancyStages(const OctreeLevel& ranges, int blockEdgeVoxels,
         grid.occupiedBlocks =
             std::accumulate(occupiedInSlice->begin(), occupiedInSlice->end(), std::int64_t(0));
     };
-    return {{blocks.z, markSlices}, {1, count}};
-}
-
-Result<Occupancy> occupiedBlocks(const CellVisibility& visibility, int blockEdgeVoxels,
-                                 const CancelToken* cancel) {
-    const auto ranges = blockRanges(*visibility.texels, blockEdgeVoxels, cancel);
-    if (!ranges) {
-        return tl::unexpected(ranges.error());
-    }
-    FreeLengths grid;
-    return runStages(occupancyStages(*ranges, blockEdgeVoxels, visibility,
-                                     {.free = 0, .occupied = 1}, grid),
-                     cancel)
-        .map([&] {
-            return Occupancy{grid.blocks, std::move(grid.counts)};
-        });
+    return {roomFor(grid), {blocks.z, markSlices}, {1, count}};
 }
 
 Result<FreeLengths> buildGrid(SkipStructure structure, const CellVisibility& visibility,

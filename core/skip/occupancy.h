@@ -16,21 +16,6 @@
 
 namespace slabcast {
 
-/// Which blocks of e^3 voxels a ray may not skip. Block b spans [b*e, (b+1)*e] in voxel
-/// coordinates, the last one of an axis possibly beyond the volume. Shape: blocks, x fastest; 1
-/// where occupied, else 0.
-struct Occupancy {
-    glm::ivec3 blocks{0};
-    std::vector<std::uint8_t> occupied;
-};
-
-/// A block is occupied where a visible cell meets it grown by one voxel on each side. The voxel of
-/// margin absorbs what the texture unit's addressing and rounded positions may add; no length that
-/// is stored counts on it. Cost: O(voxels), all cores. Fails: Internal where cancelled. Tested by:
-/// proximity_cloud_test.cpp
-Result<Occupancy> occupiedBlocks(const CellVisibility& visibility, int blockEdgeVoxels,
-                                 const CancelToken* cancel = nullptr);
-
 /// Least and greatest code of the cells that meet each block grown by one voxel: the leaves of a
 /// min-max octree, from which the occupancy under any TF follows block by block. Cost: O(voxels),
 /// all cores. Fails: Internal where cancelled. Tested by: chebyshev_test.cpp
@@ -43,8 +28,15 @@ struct BlockBytes {
     std::uint8_t occupied;
 };
 
-/// Occupancy as the bytes that a grid of lengths begins with, and how many blocks are occupied.
-/// Shape and storage of `grid` are set at once. Cost: O(blocks). Tested by: chebyshev_test.cpp
+/// Makes room for a grid's bytes slice by slice: memory is slow when it is first touched. Where
+/// they will lie is settled at once. Shape and block edge of `grid` are set.
+BuildStage roomFor(FreeLengths& grid);
+
+/// Occupancy as the bytes that a grid of lengths begins with, and how many blocks are occupied: a
+/// block is where a visible cell meets it grown by one voxel on each side. The voxel of margin
+/// absorbs what the texture unit's addressing and rounded positions may add; no length that is
+/// stored counts on it. The shape of `grid` is set at once, and where its bytes will lie. Cost:
+/// O(blocks). Tested by: chebyshev_test.cpp
 BuildStages occupancyStages(const OctreeLevel& ranges, int blockEdgeVoxels,
                             const CellVisibility& visibility, BlockBytes bytes, FreeLengths& grid);
 

@@ -20,14 +20,6 @@ std::string mebibytes(std::int64_t bytes) {
     return std::to_string((bytes + kMebi - 1) / kMebi) + " MiB";
 }
 
-tl::unexpected<Error> overBudget(const SkipOptions& options, std::int64_t bytes) {
-    return fail(ErrorCode::VolumeTooLarge,
-                std::to_string(options.partitions) + " partitions at block edge " +
-                    std::to_string(options.blockEdgeVoxels) + ": they need " + mebibytes(bytes) +
-                    ", over the budget of " + mebibytes(options.memoryBudgetBytes) +
-                    "; take fewer partitions, a larger block edge or a larger budget");
-}
-
 /// First and last partition of each block: bins rise with codes, and the cells of a block, of
 /// which neighbours share corners, have every value between the least and the greatest.
 struct PartitionRanges {
@@ -79,16 +71,33 @@ std::vector<int> members(const BinSet& set, int bins) {
 
 } // namespace
 
+PartitionLimit budgetOf(const SkipOptions& options) {
+    return {options.memoryBudgetBytes, "the budget",
+            "take fewer partitions, a larger block edge or a larger budget"};
+}
+
+Result<void> checkPartitions(const SkipOptions& options, std::int64_t bytes,
+                             const PartitionLimit& limit) {
+    if (bytes <= limit.bytes) {
+        return {};
+    }
+    return fail(ErrorCode::VolumeTooLarge,
+                std::to_string(options.partitions) + " partitions at block edge " +
+                    std::to_string(options.blockEdgeVoxels) + ": they need " + mebibytes(bytes) +
+                    " (" + std::to_string(bytes) + " bytes), over " + limit.name + " of " +
+                    mebibytes(limit.bytes) + "; " + limit.remedy);
+}
+
 Result<PartitionedMaps> buildPartitionedMaps(const TexelCodes& codes, ValueBins bins,
                                              const SkipOptions& options,
                                              const CancelToken* cancel) {
     const int edge = options.blockEdgeVoxels;
     SLABCAST_EXPECTS(bins.count == options.partitions, bins.count);
-    const glm::ivec3 blocks = (codes.dims + edge - 1) / edge;
+    const glm::ivec3 blocks = blocksOf(codes.dims, edge);
     const std::int64_t perMap = blockCount(blocks);
     const std::int64_t bytes = perMap * bins.count;
-    if (bytes > options.memoryBudgetBytes) {
-        return overBudget(options, bytes);
+    if (Result<void> fits = checkPartitions(options, bytes, budgetOf(options)); !fits) {
+        return tl::unexpected(fits.error());
     }
     const Result<OctreeLevel> ranges = blockRanges(codes, edge, cancel);
     if (!ranges) {

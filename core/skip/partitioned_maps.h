@@ -23,6 +23,19 @@ struct PartitionedMaps {
     std::vector<std::uint8_t> distances; // partition by partition, of each blocks x fastest
 };
 
+/// What bounds the bytes of partitioned maps, and what helps where they are more.
+struct PartitionLimit {
+    std::int64_t bytes = 0;
+    const char* name = "";
+    const char* remedy = "";
+};
+
+PartitionLimit budgetOf(const SkipOptions& options);
+
+/// Fails: VolumeTooLarge, naming what is needed, where maps of so many bytes are beyond the limit.
+Result<void> checkPartitions(const SkipOptions& options, std::int64_t bytes,
+                             const PartitionLimit& limit);
+
 /// Partition p occupies a block where, of the cells that meet it grown by one voxel, one has p
 /// between the bins of its least and its greatest corner. Contract: `options` are valid, and the
 /// bins as many as their partitions. Cost: O(voxels + blocks * partitions), all cores. Fails:

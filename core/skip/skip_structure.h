@@ -5,6 +5,8 @@
 #include <optional>
 #include <span>
 
+#include <glm/glm.hpp>
+
 #include "core/base/error.h"
 
 namespace slabcast {
@@ -68,6 +70,11 @@ struct SkipOptions {
 
     bool operator==(const SkipOptions&) const = default;
 };
+
+/// Blocks, or leaves, that make up a volume, the last one of an axis possibly beyond it.
+inline glm::ivec3 blocksOf(glm::ivec3 dims, int edgeVoxels) {
+    return (dims + edgeVoxels - 1) / edgeVoxels;
+}
 
 /// Fails: InvalidArgument, naming what is offered. Tested by: skip_structure_test.cpp
 Result<void> check(const SkipOptions& options);

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <span>
 #include <string>
-#include <vector>
+
+#include "core/gl/state_guard.h"
+#include "core/skip/skip_structure.h"
 
 namespace slabcast {
 
@@ -19,57 +23,46 @@ constexpr TexelLayout kLayouts[] = {
 // Bytes and halves lie in a word with the low one first.
 static_assert(std::endian::native == std::endian::little);
 
-int roundUp(int value, int multiple) {
-    return (value + multiple - 1) / multiple * multiple;
-}
+constexpr const char* kFreeLengths = "free lengths"; // in messages
 
 std::int64_t volumeOf(glm::ivec3 size) {
     return std::int64_t(size.x) * size.y * size.z;
 }
 
-/// One level's texels; `empty` fills what lies beyond the values.
-template <class Value>
-std::vector<std::uint32_t> packed(std::span<const Value> values, glm::ivec3 size,
-                                  const SkipLayout& layout, int level, std::uint32_t empty) {
-    const glm::ivec3 texels = layout.texelsOf(level);
-    const int words = layout.wordsPerTexel();
-    std::uint32_t emptyTexel = 0;
-    for (int i = 0; i < layout.perTexel; ++i) {
-        emptyTexel |= empty << (i * layout.bits);
-    }
-    std::vector<std::uint32_t> out(volumeOf(texels) * words, emptyTexel);
-    const std::int64_t rowWords = std::int64_t(size.x) * words;
-    const Value* row = values.data();
-    for (int z = 0; z < size.z; ++z) {
-        for (int y = 0; y < size.y; ++y, row += rowWords) {
-            std::uint32_t* texel = out.data() + (std::int64_t(z) * texels.y + y) * texels.x * words;
-            if (int(sizeof(Value)) * 8 == std::min(layout.bits, 32)) {
-                std::memcpy(texel, row, rowWords * sizeof(Value)); // lies in memory as it should
-                continue;
-            }
-            for (int x = 0; x < size.x; ++x) { // narrow nodes are empty as zeros
-                texel[x / layout.perTexel] |= std::uint32_t(row[x])
-                                              << (x % layout.perTexel * layout.bits);
-            }
-        }
-    }
-    return out;
+glm::ivec3 texelsOf(glm::ivec3 values, int perTexel) {
+    return {(values.x + perTexel - 1) / perTexel, values.y, values.z};
 }
 
-Result<SkipTexture> upload(const char* label, const SkipLayout& layout,
-                           const std::vector<std::vector<std::uint32_t>>& levels,
-                           const gl::Caps& caps) {
-    if (Result<void> fits = checkFits(layout, caps); !fits) {
-        return tl::unexpected(fits.error());
+/// Width and height of a texture of so many texels, log2, such that it is about as deep: from 0.35
+/// to 2.8 times. 1 at least: 0 stands for a level that is the texture.
+int foldOf(std::int64_t texels) {
+    return std::max(1, int(std::lround(std::log2(double(texels)) / 3.0)));
+}
+
+/// A level's values in its place among `words`, which hold zeros. Narrow values are empty as zeros.
+template <class Value>
+void pack(std::span<const Value> values, glm::ivec3 size, const SkipLayout& layout,
+          const SkipLevel& level, std::uint32_t* words) {
+    const int wordsPerTexel = layout.wordsPerTexel();
+    const std::int64_t rowWords = std::int64_t(size.x) * wordsPerTexel;
+    std::uint32_t* to = words + std::int64_t(level.first) * wordsPerTexel;
+    const Value* row = values.data();
+    for (std::int64_t rows = std::int64_t(size.y) * size.z; rows > 0; --rows) {
+        if (int(sizeof(Value)) * 8 == std::min(layout.bits, 32)) {
+            std::memcpy(to, row, rowWords * sizeof(Value)); // lies in memory as it should
+        } else {
+            for (int x = 0; x < size.x; ++x) {
+                to[x / layout.perTexel] |= std::uint32_t(row[x])
+                                           << (x % layout.perTexel * layout.bits);
+            }
+        }
+        row += rowWords;
+        to += std::int64_t(level.texels.x) * wordsPerTexel;
     }
-    std::vector<const void*> data;
-    for (const std::vector<std::uint32_t>& level : levels) {
-        data.push_back(level.data());
-    }
-    return uploadLevels3d(label, texelLayoutOf(layout), layout.texels, data)
-        .map([&](gl::Texture&& texture) {
-            return SkipTexture{std::move(texture), layout.bytes()};
-        });
+}
+
+std::vector<std::uint32_t> noWords(const SkipLayout& layout) {
+    return std::vector<std::uint32_t>(volumeOf(layout.texels) * layout.wordsPerTexel());
 }
 
 SkipLayout layoutOf(const Octree& octree) {
@@ -79,28 +72,36 @@ SkipLayout layoutOf(const Octree& octree) {
 } // namespace
 
 std::int64_t SkipLayout::bytes() const {
-    std::int64_t texelCount = 0;
-    for (int level = 0; level < levels; ++level) {
-        texelCount += volumeOf(texelsOf(level));
-    }
-    return texelCount * texelLayoutOf(*this).bytesPerTexel;
+    return volumeOf(texels) * texelLayoutOf(*this).bytesPerTexel;
+}
+
+SkipLayout gridLayout(glm::ivec3 values, int bitsPerValue) {
+    const int perTexel = bitsPerValue < 32 ? 32 / bitsPerValue : 1;
+    const glm::ivec3 texels = texelsOf(values, perTexel);
+    return {bitsPerValue, perTexel, texels, {{texels}}};
 }
 
 SkipLayout freeLengthLayout(glm::ivec3 blocks) {
-    return octreeLayout(blocks, 1, 8);
+    return gridLayout(blocks, 8);
 }
 
 SkipLayout octreeLayout(glm::ivec3 leaves, int levels, int bitsPerNode) {
-    const int perTexel = bitsPerNode < 32 ? 32 / bitsPerNode : 1;
-    const int multiple = 1 << (levels - 1);
-    return {bitsPerNode, perTexel,
-            glm::ivec3(roundUp(leaves.x, perTexel * multiple) / perTexel,
-                       roundUp(leaves.y, multiple), roundUp(leaves.z, multiple)),
-            levels};
-}
-
-std::uint32_t emptyNode(NodeContent content) {
-    return content == NodeContent::Range ? 0x0000ffffU : 0U;
+    SLABCAST_EXPECTS(levels > 0 && levels <= kMaxOctreeLevels, levels);
+    SkipLayout layout = gridLayout(leaves, bitsPerNode);
+    layout.levels.clear();
+    std::int64_t total = 0;
+    for (int level = 0; level < levels; ++level) {
+        const glm::ivec3 texels = texelsOf(blocksOf(leaves, 1 << level), layout.perTexel);
+        layout.levels.push_back({texels, int(total)});
+        total += volumeOf(texels);
+    }
+    const int fold = foldOf(total);
+    for (SkipLevel& level : layout.levels) {
+        level.fold = fold;
+    }
+    const std::int64_t perSlice = std::int64_t(1) << (2 * fold);
+    layout.texels = glm::ivec3(1 << fold, 1 << fold, (total + perSlice - 1) / perSlice);
+    return layout;
 }
 
 const TexelLayout& texelLayoutOf(const SkipLayout& layout) {
@@ -116,33 +117,83 @@ std::int64_t gpuBytes(const Octree& octree) {
 }
 
 Result<void> checkFits(const SkipLayout& layout, const gl::Caps& caps) {
+    const auto tooLarge = [](const std::string& what) {
+        return fail(ErrorCode::VolumeTooLarge,
+                    "the skip structure has " + what + "; give it longer blocks or leaves");
+    };
     const int longest = std::max({layout.texels.x, layout.texels.y, layout.texels.z});
-    if (longest <= caps.maxTexture3DSize) {
-        return {};
+    if (longest > caps.maxTexture3DSize) {
+        return tooLarge(std::to_string(longest) +
+                        " texels along an edge, the device's 3D textures end at " +
+                        std::to_string(caps.maxTexture3DSize));
     }
-    return fail(ErrorCode::VolumeTooLarge,
-                "the skip structure has " + std::to_string(longest) +
-                    " texels along an edge, the device's 3D textures end at " +
-                    std::to_string(caps.maxTexture3DSize) + "; give it longer blocks or leaves");
+    constexpr int kMost = std::numeric_limits<int>::max();
+    if (volumeOf(layout.texels) > kMost) {
+        return tooLarge(std::to_string(volumeOf(layout.texels)) + " texels, shaders count to " +
+                        std::to_string(kMost));
+    }
+    return {};
+}
+
+Result<SkipTexture> allocateSkip(const char* label, const SkipLayout& layout,
+                                 const gl::Caps& caps) {
+    return checkFits(layout, caps)
+        .and_then([&] {
+            const gl::StateGuard guard;
+            return allocate3d(label, texelLayoutOf(layout), layout.texels);
+        })
+        .map([&](gl::Texture&& texture) {
+            return SkipTexture{std::move(texture), layout.bytes()};
+        });
+}
+
+int slicesWithin(std::int64_t bytes, glm::ivec3 blocks) {
+    const std::int64_t perSlice = freeLengthLayout({blocks.x, blocks.y, 1}).bytes();
+    return int(std::clamp<std::int64_t>(bytes / perSlice, 1, blocks.z));
+}
+
+Result<SkipTexture> allocateFreeLengths(glm::ivec3 blocks, const gl::Caps& caps) {
+    return allocateSkip(kFreeLengths, freeLengthLayout(blocks), caps);
+}
+
+Result<void> uploadSlices(const SkipTexture& into, const FreeLengths& lengths, int begin, int end) {
+    const glm::ivec3 size(lengths.blocks.x, lengths.blocks.y, end - begin);
+    const std::int64_t perSlice = std::int64_t(size.x) * size.y;
+    SLABCAST_EXPECTS(perSlice * lengths.blocks.z == std::int64_t(lengths.counts.size()) &&
+                         begin >= 0 && begin < end && end <= lengths.blocks.z,
+                     end);
+    const SkipLayout layout = freeLengthLayout(size);
+    const std::span<const std::uint8_t> counts(lengths.counts);
+    std::vector<std::uint32_t> words = noWords(layout);
+    pack(counts.subspan(begin * perSlice, size.z * perSlice), size, layout, layout.levels.front(),
+         words.data());
+    return fillSlices(kFreeLengths, into.texture, texelLayoutOf(layout), {layout.texels, begin},
+                      words.data());
 }
 
 Result<SkipTexture> uploadFreeLengths(const FreeLengths& lengths, const gl::Caps& caps) {
-    SLABCAST_EXPECTS(volumeOf(lengths.blocks) == std::int64_t(lengths.counts.size()),
-                     lengths.counts.size());
-    const SkipLayout layout = freeLengthLayout(lengths.blocks);
-    const std::span<const std::uint8_t> counts = lengths.counts;
-    return upload("free lengths", layout, {packed(counts, lengths.blocks, layout, 0, 0)}, caps);
+    Result<SkipTexture> made = allocateFreeLengths(lengths.blocks, caps);
+    if (!made) {
+        return made;
+    }
+    return uploadSlices(*made, lengths, 0, lengths.blocks.z).map([&] { return std::move(*made); });
 }
 
 Result<SkipTexture> uploadOctree(const Octree& octree, const gl::Caps& caps) {
     const SkipLayout layout = layoutOf(octree);
-    std::vector<std::vector<std::uint32_t>> levels;
-    for (const OctreeLevel& level : octree.levels) {
-        const std::span<const std::uint32_t> words = level.words;
-        levels.push_back(
-            packed(words, level.nodes, layout, int(levels.size()), emptyNode(octree.content)));
+    std::vector<std::uint32_t> words = noWords(layout);
+    for (std::size_t i = 0; i < octree.levels.size(); ++i) {
+        const OctreeLevel& level = octree.levels[i];
+        pack(std::span<const std::uint32_t>(level.words), level.nodes, layout, layout.levels[i],
+             words.data());
     }
-    return upload("octree", layout, levels, caps);
+    constexpr const char* kOctree = "octree";
+    Result<SkipTexture> made = allocateSkip(kOctree, layout, caps);
+    if (!made) {
+        return made;
+    }
+    return fillSlices(kOctree, made->texture, texelLayoutOf(layout), {layout.texels}, words.data())
+        .map([&] { return std::move(*made); });
 }
 
 } // namespace slabcast

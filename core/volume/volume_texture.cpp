@@ -91,9 +91,8 @@ Result<void> checkExtent(glm::ivec3 dims, std::int64_t bytesPerTexel, const Limi
                          : "; load it with --downsample " + std::to_string(downsampling)));
 }
 
-void setSampling(GLenum target, GLint filter, bool mipmapped = false) {
-    gl::TexParameteri(target, GL_TEXTURE_MIN_FILTER,
-                      mipmapped ? GL_NEAREST_MIPMAP_NEAREST : filter);
+void setSampling(GLenum target, GLint filter) {
+    gl::TexParameteri(target, GL_TEXTURE_MIN_FILTER, filter);
     gl::TexParameteri(target, GL_TEXTURE_MAG_FILTER, filter);
     gl::TexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     gl::TexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
@@ -101,27 +100,31 @@ void setSampling(GLenum target, GLint filter, bool mipmapped = false) {
 }
 
 /// In slabs of 16 MiB, so that the driver's staging copy stays small beside the volume.
-void uploadSlabs(const Layout& layout, int level, glm::ivec3 dims, const std::byte* data) {
+void uploadSlabs(const Layout& layout, const Slices& slices, const std::byte* data) {
+    const glm::ivec3 dims = slices.dims;
     constexpr std::int64_t kSlabBytes = 16 << 20;
     const std::int64_t sliceBytes = std::int64_t{dims.x} * dims.y * layout.bytesPerTexel;
     const int depth =
         static_cast<int>(std::clamp<std::int64_t>(kSlabBytes / sliceBytes, 1, dims.z));
     for (int z = 0; z < dims.z; z += depth) {
-        gl::TexSubImage3D(GL_TEXTURE_3D, level, 0, 0, z, dims.x, dims.y,
+        gl::TexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, slices.first + z, dims.x, dims.y,
                           std::min(depth, dims.z - z), layout.format, layout.type,
                           data + z * sliceBytes);
     }
 }
 
-Result<gl::Texture> upload3d(const char* label, const Layout& layout, glm::ivec3 dims,
-                             const void* data, const gl::Caps& caps) {
+Result<gl::Texture> uploadVoxels(const char* label, const Layout& layout, glm::ivec3 dims,
+                                 const void* data, const gl::Caps& caps) {
     const auto fits =
         checkExtent(dims, layout.bytesPerTexel, {caps.maxTexture3DSize, std::nullopt});
     if (!fits) {
         return tl::unexpected(fits.error());
     }
-    const void* levels[] = {data};
-    return uploadLevels3d(label, layout, dims, levels);
+    return upload3d(label, layout, dims, data);
+}
+
+std::string described(const char* label, glm::ivec3 dims) {
+    return std::string(label) + " (" + text(dims) + ")";
 }
 
 /// A transfer table.
@@ -166,37 +169,35 @@ Result<gl::Texture> upload2d(const char* label, const TexelLayout& layout, glm::
     return texture;
 }
 
-Result<gl::Texture> allocate3d(const char* label, const TexelLayout& layout, glm::ivec3 dims,
-                               int levels) {
+Result<gl::Texture> allocate3d(const char* label, const TexelLayout& layout, glm::ivec3 dims) {
     gl::takeError(); // what came before is not ours
     gl::Texture texture = gl::Texture::make(label, GL_TEXTURE_3D);
     gl::BindTexture(GL_TEXTURE_3D, texture.id());
-    gl::TexStorage3D(GL_TEXTURE_3D, levels, layout.internalFormat, dims.x, dims.y, dims.z);
-    if (const auto allocated = takeUploadError(std::string(label) + " (" + text(dims) + ")");
-        !allocated) {
-        return tl::unexpected(allocated.error());
-    }
-    setSampling(GL_TEXTURE_3D, layout.filter, levels > 1);
-    return texture;
+    gl::TexStorage3D(GL_TEXTURE_3D, 1, layout.internalFormat, dims.x, dims.y, dims.z);
+    setSampling(GL_TEXTURE_3D, layout.filter);
+    return takeUploadError(described(label, dims)).map([&] { return std::move(texture); });
 }
 
-Result<gl::Texture> uploadLevels3d(const char* label, const TexelLayout& layout, glm::ivec3 dims,
-                                   std::span<const void* const> levels) {
+Result<void> fillSlices(const char* label, const gl::Texture& texture, const TexelLayout& layout,
+                        const Slices& slices, const void* texels) {
     const gl::StateGuard guard;
     gl::StateGuard::usePlainPixelTransfer();
-    Result<gl::Texture> texture = allocate3d(label, layout, dims, static_cast<int>(levels.size()));
+    gl::takeError();
+    gl::BindTexture(GL_TEXTURE_3D, texture.id());
+    uploadSlabs(layout, slices, static_cast<const std::byte*>(texels));
+    return takeUploadError(described(label, slices.dims));
+}
+
+Result<gl::Texture> upload3d(const char* label, const TexelLayout& layout, glm::ivec3 dims,
+                             const void* texels) {
+    const gl::StateGuard guard;
+    Result<gl::Texture> texture = allocate3d(label, layout, dims);
     if (!texture) {
         return texture;
     }
-    for (int level = 0; level < static_cast<int>(levels.size()); ++level) {
-        uploadSlabs(layout, level, glm::max(dims >> level, 1),
-                    static_cast<const std::byte*>(levels[level]));
-    }
-    if (const auto uploaded = takeUploadError(std::string(label) + " (" + text(dims) + ")");
-        !uploaded) {
-        return tl::unexpected(uploaded.error());
-    }
-    return texture;
+    return fillSlices(label, *texture, layout, {dims}, texels).map([&] {
+        return std::move(*texture);
+    });
 }
 
 std::int64_t uploadedBytesPerTexel(TexelFormat format, bool preclassified) {
@@ -238,20 +239,20 @@ Result<gl::Texture> uploadTexels(const Texels& texels, const gl::Caps& caps) {
     const auto bytes = forecastTextureBytes(texels.dims, texels.format);
     SLABCAST_EXPECTS(!bytes || *bytes == static_cast<std::int64_t>(texels.data.size()),
                      texels.data.size());
-    return upload3d("volume texels", layoutOf(texels.format), texels.dims, texels.data.data(),
-                    caps);
+    return uploadVoxels("volume texels", layoutOf(texels.format), texels.dims, texels.data.data(),
+                        caps);
 }
 
 Result<gl::Texture> uploadClassified(const glm::u8vec4* texels, glm::ivec3 dims,
                                      const gl::Caps& caps) {
-    return upload3d("classified texels", kClassifiedLayout, dims, texels, caps);
+    return uploadVoxels("classified texels", kClassifiedLayout, dims, texels, caps);
 }
 
 Result<gl::Texture> uploadBytes3d(std::span<const std::uint8_t> bytes, glm::ivec3 dims,
                                   const gl::Caps& caps) {
     const auto needed = textureBytes(dims, kByteLayout.bytesPerTexel);
     SLABCAST_EXPECTS(!needed || *needed == static_cast<std::int64_t>(bytes.size()), bytes.size());
-    return upload3d("skip data", kByteLayout, dims, bytes.data(), caps);
+    return uploadVoxels("skip data", kByteLayout, dims, bytes.data(), caps);
 }
 
 Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, bool wide,

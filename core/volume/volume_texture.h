@@ -57,14 +57,22 @@ struct TexelLayout {
     std::int64_t bytesPerTexel;
 };
 
-/// A 3D texture of so many levels, bound and without content. Contract: it is within the device's
-/// limit, and several levels are not filtered.
-Result<gl::Texture> allocate3d(const char* label, const TexelLayout& layout, glm::ivec3 dims,
-                               int levels);
+/// A 3D texture, bound and without content. Contract: it is within the device's limit.
+Result<gl::Texture> allocate3d(const char* label, const TexelLayout& layout, glm::ivec3 dims);
 
-/// The same with what its levels hold, tightly packed.
-Result<gl::Texture> uploadLevels3d(const char* label, const TexelLayout& layout, glm::ivec3 dims,
-                                   std::span<const void* const> levels);
+/// Whole slices of a 3D texture.
+struct Slices {
+    glm::ivec3 dims{0};
+    int first = 0;
+};
+
+/// Puts `texels`, tightly packed, into slices of a texture of this layout.
+Result<void> fillSlices(const char* label, const gl::Texture& texture, const TexelLayout& layout,
+                        const Slices& slices, const void* texels);
+
+/// Both.
+Result<gl::Texture> upload3d(const char* label, const TexelLayout& layout, glm::ivec3 dims,
+                             const void* texels);
 
 /// A 2D texture of one level.
 Result<gl::Texture> upload2d(const char* label, const TexelLayout& layout, glm::ivec2 size,

@@ -9,6 +9,7 @@
 #include <glm/glm.hpp>
 #include <rapidcheck/gtest.h>
 
+#include "core/skip/skip_structure.h"
 #include "tests/support/skip_scene.h"
 
 // Grids of blocks by their words: every cell against every block, every block against every other.
@@ -31,14 +32,13 @@ void forBox(glm::ivec3 first, glm::ivec3 end, Visit visit) {
     }
 }
 
-/// Blocks that a cell meets of which `counts(least, greatest)` is true of its corners' codes. All
-/// cells, half cells at the border (-1 and dims - 1) included, against all blocks grown by one
-/// voxel, from their intervals alone.
-template <class Counts>
-std::vector<std::uint8_t> blocksThatCellsMeet(const SkipScene& scene, int edge, Counts counts) {
+/// Calls meets(index) for the blocks that a cell meets, cell by cell, of which `counts(least,
+/// greatest)` is true of its corners' codes. All cells, half cells at the border (-1 and dims - 1)
+/// included, against all blocks grown by one voxel, from their intervals alone.
+template <class Counts, class Meets>
+void forBlocksThatCellsMeet(const SkipScene& scene, int edge, Counts counts, Meets meets) {
     const glm::ivec3 dims = scene.geometry.dims;
-    const glm::ivec3 blocks = (dims + edge - 1) / edge;
-    std::vector<std::uint8_t> met(std::size_t(blocks.x) * blocks.y * blocks.z);
+    const glm::ivec3 blocks = blocksOf(dims, edge);
     forBox(glm::ivec3(-1), dims, [&](glm::ivec3 cell) {
         std::uint16_t least = 65535;
         std::uint16_t greatest = 0;
@@ -56,10 +56,18 @@ std::vector<std::uint8_t> blocksThatCellsMeet(const SkipScene& scene, int edge, 
             const glm::dvec3 from = glm::dvec3(block * edge) - 1.0;
             const glm::dvec3 to = glm::dvec3((block + 1) * edge) + 1.0;
             if (glm::all(glm::lessThanEqual(low, to)) && glm::all(glm::lessThanEqual(from, high))) {
-                met[indexOf(block, blocks)] = 1;
+                meets(indexOf(block, blocks));
             }
         });
     });
+}
+
+/// 1 for the blocks that such a cell meets, else 0.
+template <class Counts>
+std::vector<std::uint8_t> blocksThatCellsMeet(const SkipScene& scene, int edge, Counts counts) {
+    const glm::ivec3 blocks = blocksOf(scene.geometry.dims, edge);
+    std::vector<std::uint8_t> met(std::size_t(blocks.x) * blocks.y * blocks.z);
+    forBlocksThatCellsMeet(scene, edge, counts, [&](std::size_t block) { met[block] = 1; });
     return met;
 }
 
@@ -92,19 +100,23 @@ inline std::vector<std::uint8_t> chebyshevByTheWords(const std::vector<std::uint
 }
 
 /// A few odd voxels in an even background: some free space, some blocks, bands between voxels.
-inline SkipScene randomScene(int largestDim) {
+inline SkipScene oddVoxels(int largestDim, int background, TransferTable table) {
     const auto dim = rc::gen::inRange(1, largestDim);
     const glm::ivec3 dims(*dim, *dim, *dim);
-    const int first = *rc::gen::inRange(2, 256);
-    const int last = std::min(255, first + *rc::gen::element(0, 1, 5, 100));
-    const int background = *rc::gen::element(0, 0, 128, 255);
-    SkipScene scene = constantScene(dims, std::uint16_t(background), bandTable(256, first, last));
+    SkipScene scene = constantScene(dims, std::uint16_t(background), std::move(table));
     const auto odd = *rc::gen::container<std::vector<std::pair<int, int>>>(rc::gen::pair(
         rc::gen::inRange(0, int(scene.codes.codes.size())), rc::gen::inRange(0, 256)));
     for (const auto& [voxel, code] : odd) {
         scene.codes.codes[voxel] = std::uint16_t(code);
     }
     return scene;
+}
+
+/// The same under a TF of one band.
+inline SkipScene randomScene(int largestDim) {
+    const int first = *rc::gen::inRange(2, 256);
+    const int last = std::min(255, first + *rc::gen::element(0, 1, 5, 100));
+    return oddVoxels(largestDim, *rc::gen::element(0, 0, 128, 255), bandTable(256, first, last));
 }
 
 inline int randomEdge() {

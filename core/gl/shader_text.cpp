@@ -1,4 +1,4 @@
-#include "core/frame/shader_text.h"
+#include "core/gl/shader_text.h"
 
 #include <iterator>
 #include <set>
