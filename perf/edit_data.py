@@ -1,5 +1,6 @@
 """Replayed edits as the page needs them: read and checked, frame by frame."""
 
+from collections import Counter
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -8,6 +9,9 @@ from page_input import BadInput, number
 
 AGAIN = "run `slabcast edit` again"
 TIMES = ("frameMs", "octreeMs", "naiveMs")
+KINDS = {"bitfield-octree": "bitfield octree", "minmax-octree": "min-max octree", "boolean-octree": "Boolean octree",
+         "partitioned": "partitioned maps", "proximity": "proximity cloud", "chebyshev": "Chebyshev map",
+         "blocks": "block occupancy", "none": "nothing"}
 PARTS = {"editMs": "edit", "workMs": "rebuilding", "prepareMs": "plan and uploads", "drawMs": "drawing"}
 
 
@@ -30,7 +34,7 @@ class Frame:
         return number(page_input.section(self.raw, "counters").get(name))
 
     @property
-    def over_octree(self):
+    def over_compared(self):
         return self.times["frameMs"] / self.times["octreeMs"]
 
 
@@ -47,6 +51,12 @@ class Edit:
         return number(self.section("summary").get("budget_ms"))
 
     @property
+    def compared(self):
+        """What each frame is compared with: the structure that is right under any transfer function."""
+        structure = self.section("summary").get("compared_with")
+        return "structure" if structure is None else KINDS.get(structure, str(structure))
+
+    @property
     def structures(self):
         """Those that served, in the order in which they first did."""
         return list(dict.fromkeys(frame.structure for frame in self.frames))
@@ -54,6 +64,10 @@ class Edit:
     @property
     def edits(self):
         return [frame for frame in self.frames if frame.edited]
+
+    def served(self, edited):
+        """[(structure, frames)] of those with an edit or of those without, most frames first."""
+        return Counter(frame.structure for frame in self.frames if frame.edited == edited).most_common()
 
     def runs(self, key):
         """[(value, first frame, frame after the last)] of neighbours with the same `key(frame)`."""

@@ -1,12 +1,14 @@
 """Replayed edits as one self-contained HTML page."""
 
 import edit_plots as plots
+from edit_data import KINDS
 from page_html import (MISSING, by, card, cards, command, device_facts, document, esc, facts, figure, figures, masthead,
                        mebibytes, plural, section, table, times)
 from page_input import number, section as part
 
-GOAL = 1.5  # octree frames, of the worst frame
+GOAL = 1.5  # of the worst frame, in frames that it is compared with
 WORST = 10  # frames that are listed
+NO_STRUCTURE = {"none": "nothing", "nothing drawn": "nothing, as nothing was visible"}
 CHANGED = {"script": "a script", "interpolation": "an interpolation", "usual": "edits of every kind"}
 
 
@@ -17,19 +19,45 @@ def of_summary(edit, *path):
     return number(value)
 
 
+def the(edit):
+    return esc(f"the {edit.compared}")
+
+
+def served_by(edit, edited):
+    """As "the bitfield octree (40 frames) and nothing (2 frames)"."""
+    return " and ".join(f"{'' if name in NO_STRUCTURE else 'the '}{NO_STRUCTURE.get(name, KINDS.get(name, name))} "
+                        f"({plural(count, 'frame')})" for name, count in edit.served(edited))
+
+
+def what_served(edit):
+    words = "A transfer function is edited while the volume is drawn."
+    if edit.edits:
+        words += f" What skipped empty space in the frames of edits: {served_by(edit, True)}."
+    if len(edit.edits) < len(edit.frames):
+        words += f" In those without: {served_by(edit, False)}."
+    settled = part(edit.section("builds"), "settled").get("structure")
+    if settled is None:
+        serve = "serve" if edit.compared.endswith("s") else "serves"
+        return f"{words} The {edit.compared} {serve} under any transfer function, and nothing is rebuilt."
+    return (f"{words} When the hand rests, the {KINDS.get(settled, settled)} is rebuilt for the transfer function of "
+            f"then, a little per frame; it took over {plural(sum(frame.swapped for frame in edit.frames), 'time')}.")
+
+
 def head(edit):
     summary, volume, device = edit.section("summary"), edit.section("volume"), edit.section("device")
     worst, naive = of_summary(edit, "worst_over_octree_frame"), of_summary(edit, "naive", "worst_over_octree_frame")
-    found = [card("Worst frame", times(worst), f"of an octree frame; rebuilding all at once: {times(naive)}",
+    found = [card("Worst frame", times(worst), f"of a frame by {the(edit)} at rest; rebuilding all at once: "
+                  f"{times(naive)}",
                   "skips" if worst is not None and worst <= GOAL else "")]
     added, spread = of_summary(edit, "worst_added_over_octree_frame"), of_summary(edit, "worst_octree_frame_over_median")
     if added is not None:
-        found.append(card("Added at worst", f"{100 * (added - 1):.2g} %", "of an octree frame, by edit, rebuilding and "
-                          f"uploads; octree frames by themselves vary up to {times(spread)} their median",
+        found.append(card("Added at worst", f"{figures(100 * (added - 1))} %", "of such a frame, by edit, rebuilding and "
+                          f"uploads; those by themselves vary up to {times(spread)} their median",
                           "skips" if added <= GOAL else ""))
-    equal = number(summary.get("frames_equal"))
+    equal, to_correct = number(summary.get("frames_equal")), number(summary.get("frames_to_correct"))
     if equal is not None:
-        found.append(card("From an edit to its picture", plural(int(summary.get("frames_to_correct", 0)), "frame"),
+        found.append(card("From an edit to its picture",
+                          MISSING if to_correct is None else plural(int(to_correct), "frame"),
                           f"{equal:.0f} of {len(edit.frames)} pictures as drawn from scratch, bit for bit",
                           "skips" if equal == len(edit.frames) else ""))
     else:
@@ -40,9 +68,7 @@ def head(edit):
                       f"{figures(of_summary(edit, 'naive', 'frames_over_budget'))}", "skips" if over == 0 else ""))
     line = ", ".join(filter(None, (esc(volume.get("name", "volume")), by(volume.get("dims", [])),
                                    plural(len(edit.edits), "edit"), esc(device.get("renderer", "unknown device")))))
-    words = ("<p>A transfer function is edited while the volume is drawn. The frame after an edit skips by an octree that "
-             "is right under any transfer function; when the hand rests, what skips faster under this one is rebuilt "
-             "a few milliseconds at a time.</p>")
+    words = f"<p>{esc(what_served(edit))}</p>"
     return masthead("live editing", "Is any frame of an edit slow?", line, device, words + cards(found))
 
 
@@ -60,7 +86,7 @@ def budget_words(edit):
     if not edit.budget:
         return ""
     given = edit.section("summary").get("budget_given") is True
-    why = "as asked for" if given else f"{GOAL} times the median frame of the octree"
+    why = "as asked for" if given else f"{GOAL} times the median frame by {the(edit)}"
     return f" The dashed line is the budget: {figures(edit.budget)} ms, {why}."
 
 
@@ -74,21 +100,21 @@ def compared(edit):
             ("naive: all rebuilt at every edit", part(part(summary, "naive"), "frame_ms"),
              part(part(summary, "naive"), "edit_frame_ms"), of_summary(edit, "naive", "worst_over_octree_frame"),
              of_summary(edit, "naive", "frames_over_budget")),
-            ("octree that was there, nothing edited", part(summary, "octree_frame_ms"), {},
+            (f"{the(edit)}, made beforehand: nothing edited", part(summary, "octree_frame_ms"), {},
              of_summary(edit, "worst_octree_frame_over_median"), None)):
         rows.append([name, *(figures(of_all.get(key)) for key in ("median", "p90", "max")),
                      figures(of_edits.get("median")), figures(of_edits.get("max")), times(worst), figures(over)])
     return table(["ms per frame", "median", "90 %", "worst", "with an edit: median", "with an edit: worst",
-                  "worst, octree frames", "over budget"], rows)
+                  f"worst, × {the(edit)}", "over budget"], rows)
 
 
 def worst_frames(edit):
-    slowest = sorted(enumerate(edit.frames), key=lambda one: -one[1].over_octree)[:WORST]
+    slowest = sorted(enumerate(edit.frames), key=lambda one: -one[1].over_compared)[:WORST]
     rows = [[f"{i} <i>{esc(frame.step)}{', edit' if frame.edited else ''}{', hand-over' if frame.swapped else ''}</i>",
-             times(frame.over_octree), *(short_ms(frame.times[name]) for name in (
+             times(frame.over_compared), *(short_ms(frame.times[name]) for name in (
                  "octreeMs", "frameMs", "editMs", "workMs", "prepareMs", "drawMs")), esc(frame.structure)]
             for i, frame in slowest]
-    return table(["ms of frame", "octree frames", "octree", "frame", "edit", "rebuilding", "uploads", "drawing",
+    return table(["ms of frame", f"× {the(edit)}", the(edit), "frame", "edit", "rebuilding", "uploads", "drawing",
                   "skips by"], rows, css="rows")
 
 
@@ -123,7 +149,8 @@ def run_facts(edit):
         ("Turned by", f"{figures(conditions.get('turnDegrees'))}°" if conditions.get("turnDegrees") else None),
         ("Replays", f"{figures(replays)}: each frame's times are medians; worst of any single one {times(single)}"
          if replays and replays > 1 else None),
-        ("Octree frames", f"median of {figures(conditions.get('octreeFrames'))} beside each frame"),
+        ("Compared with", f"{the(edit)}, made beforehand: median of {figures(conditions.get('octreeFrames'))} frames "
+                          "beside each"),
     ]) + command(edit.raw)
 
 
@@ -138,7 +165,7 @@ def page(edit):
             "rebuilding, plan and uploads.")),
         section("Work", work(edit)),
         section("Compared", compared(edit)),
-        section("Slowest frames, in octree frames", worst_frames(edit)),
+        section(f"Slowest frames, beside {the(edit)}", worst_frames(edit)),
         section("What is built", builds(edit)),
         section("This run", run_facts(edit)),
     ]

@@ -5,7 +5,7 @@ from matplotlib.transforms import blended_transform_factory
 from edit_data import PARTS
 from page_svg import INK, MUTED, NARROW, WIDE, key, plain_log_ticks, plt, svg
 
-LIVE, NAIVE, OCTREE, BUDGET = INK, "#c8643a", "#8fb0cc", "#b02a1e"
+LIVE, NAIVE, COMPARED, BUDGET = INK, "#c8643a", "#8fb0cc", "#b02a1e"
 FETCHES = {"volume_fetches": ("of voxels", INK), "skip_fetches": ("of the skip structure", "#1d5a91")}
 STRUCTURES = {"bitfield-octree": "#1d5a91", "minmax-octree": "#1d5a91", "partitioned": "#1d5a91",
               "proximity": "#7fb58a", "chebyshev": "#7fb58a", "blocks": "#7fb58a", "none": "#d9d4c7",
@@ -21,7 +21,7 @@ def structure_hue(name):
 
 def key_of_trace(edit):
     lines = [("live policy", LIVE, None, False, ""), ("naive: all rebuilt at every edit", NAIVE, None, False, ""),
-             ("octree that was there", OCTREE, None, False, "")]
+             (f"{edit.compared}, made beforehand", COMPARED, None, False, "")]
     if edit.budget:
         lines.append(("budget", BUDGET, None, False, "4 2"))
     return key(lines)
@@ -68,7 +68,7 @@ def trace(edit, narrow):
         axes.plot(numbers, [frame.times[name] for frame in edit.frames], drawstyle="steps-mid", **style)
 
     draw("naiveMs", color=NAIVE, lw=1.0, alpha=0.85, zorder=2)
-    draw("octreeMs", color=OCTREE, lw=2.6, zorder=3, alpha=0.9)
+    draw("octreeMs", color=COMPARED, lw=2.6, zorder=3, alpha=0.9)
     draw("frameMs", color=LIVE, lw=1.2, zorder=4)
     if edit.budget:
         axes.axhline(edit.budget, color=BUDGET, lw=1.1, dashes=(4, 2), zorder=5)

@@ -7,6 +7,8 @@ from page_html import mebibytes, times
 from page_input import number
 
 TITLE = "Which way past empty space?"
+PAIRED = ("In every round each candidate draws the same view once, in an order shuffled anew; a ratio is the median over "
+          "the rounds of none’s time over the candidate’s of the same round, so that a drifting machine hits both.")
 
 
 def volume_sections(bench, entry):
@@ -17,10 +19,11 @@ def volume_sections(bench, entry):
     compared = {row.structure for row in bench.of("frames", volume=volume, family="ray casting")} - {"none"}
     casting = figure(plots.speedups(bench, volume), bench,
                      "Each structure with the parameters that suit it best, on equal terms otherwise: one plane, the "
-                     "same camera, layers and target. The line is what none takes.")
+                     "same camera, layers and target. Bars start at the line, what none takes: to its left is slower. "
+                     + PAIRED)
     others = figure(plots.families(bench, volume), bench,
                     "Filled: planes as rectangles around what the structure finds visible; hollow: planes of the "
-                    "whole sphere. Hybrid: each at its best ratio, against none at its own best.")
+                    "whole sphere. Hybrid: each at its best ratio, against none at its own best. " + PAIRED)
     merges = figure(plots.merging(bench, volume), bench,
                     "Merging partitioned maps against rebuilding the Chebyshev map (black; the median of the transfer "
                     "functions), by block edge. What is not drawn was over the memory budget, or left out of a quick "

@@ -33,38 +33,56 @@ def _id(what, bench, volume, narrow):
     return f"{what}-{place}{'-n' if narrow else ''}"
 
 
-def _one_line(axes):
-    """What none takes."""
-    axes.axvline(1, color=INK, lw=0.9, zorder=4)
+def _bar(axes, place, speedup, **look):
+    """From 1, what none takes: to the right what is faster, to the left what is slower."""
+    axes.barh(place, speedup - 1, left=1, zorder=2, **look)
+
+
+def _panels(titles, tall, narrow):
+    """Panels side by side, or one below the other; all have the axis of speed-ups, log as ratios are."""
+    lines, columns = (len(titles), 1) if narrow else (1, len(titles))
+    figure, grid = plt.subplots(lines, columns, squeeze=False, sharex=True,
+                                figsize=(NARROW, tall * lines + 0.3) if narrow else (WIDE, tall + 0.6))
+    for axes, title in zip(grid.flat, titles):
+        axes.axvline(1, color=INK, lw=0.9, zorder=4)
+        axes.set_title(title)
+        axes.set_xscale("log")
+        _log_axis(axes.xaxis)
+        axes.grid(axis="y", visible=False)
+        axes.tick_params(axis="x", labelbottom=True)
+        axes.tick_params(axis="y", length=0, labelleft=narrow or axes is grid.flat[0])
+    return figure, grid.flat
+
+
+def _name_bars(axes, names):
+    """From the top down."""
+    axes.set_yticks(range(len(names)), [NAMES.get(name, name) for name in names], fontsize=8)
+    axes.invert_yaxis()
+
+
+def _name_axis(panels, text, narrow):
+    panels[-1 if narrow else len(panels) // 2].set_xlabel(text, color=MUTED)
+
+
+def _skipping(bench, volume, family, mode):
+    """Rows of frames but none's."""
+    return [row for row in bench.of("frames", volume=volume, family=family, mode=mode) if row.structure != "none"]
 
 
 def speedups(bench, volume):
     """Bars of ray casting: a panel per mode, a bar per structure, the paper's figures as marks on it."""
     def draw(_, narrow):
-        modes = [mode for mode in MODES if bench.of("frames", volume=volume, family="ray casting", mode=mode)]
+        modes = {mode: rows for mode in MODES if (rows := _skipping(bench, volume, "ray casting", mode))}
         if not modes:
             return None
-        columns = 1 if narrow else len(modes)
-        lines = len(modes) if narrow else 1
-        figure, grid = plt.subplots(lines, columns, squeeze=False, sharex=True,
-                                    figsize=(NARROW, 2.1 * lines + 0.3) if narrow else (WIDE, 2.7))
-        for axes, mode in zip(grid.flat, modes):
-            rows = [row for row in bench.of("frames", volume=volume, family="ray casting", mode=mode)
-                    if row.structure != "none"]
+        figure, panels = _panels(list(modes), 2.1, narrow)
+        for axes, (mode, rows) in zip(panels, modes.items()):
             for place, row in enumerate(rows):
-                axes.barh(place, row.speedup, height=0.66, color=COLOURS.get(row.structure, MUTED), zorder=2)
+                _bar(axes, place, row.speedup, height=0.66, color=COLOURS.get(row.structure, MUTED))
                 for value in bench.published(row.structure, mode):
                     axes.plot(value, place, **DIAMOND)
-            _one_line(axes)
-            axes.set_yticks(range(len(rows)), [row.name for row in rows], fontsize=8)
-            axes.tick_params(axis="y", length=0, labelleft=narrow or axes is grid.flat[0])
-            axes.invert_yaxis()
-            axes.grid(axis="y", visible=False)
-            axes.set_title(mode)
-            axes.set_xscale("log")
-            _log_axis(axes.xaxis)
-            axes.tick_params(axis="x", labelbottom=True)
-        grid.flat[len(modes) // 2 if not narrow else -1].set_xlabel("times as fast as none (log)", color=MUTED)
+            _name_bars(axes, [row.structure for row in rows])
+        _name_axis(panels, "times as fast as none (log)", narrow)
         return svg(figure, _id("speed", bench, volume, narrow))
     return draw
 
@@ -72,34 +90,21 @@ def speedups(bench, volume):
 def families(bench, volume):
     """The best of each family and structure, as a multiple of the speed of that family without skipping."""
     def draw(_, narrow):
-        groups = [(family, mode) for family in ("hybrid", "slicing") for mode in MODES
-                  if bench.of("frames", volume=volume, family=family, mode=mode)]
+        groups = {(family, mode): rows for family in ("hybrid", "slicing") for mode in MODES
+                  if (rows := _skipping(bench, volume, family, mode))}
         if not groups:
             return None
-        columns = 1 if narrow else len(groups)
-        lines = len(groups) if narrow else 1
-        figure, grid = plt.subplots(lines, columns, squeeze=False, sharex=True,
-                                    figsize=(NARROW, 2.3 * lines + 0.3) if narrow else (WIDE, 2.9))
-        for axes, (family, mode) in zip(grid.flat, groups):
-            rows = [row for row in bench.of("frames", volume=volume, family=family, mode=mode)
-                    if row.structure != "none"]
+        figure, panels = _panels([family if family == "slicing" else f"{family}, {mode}" for family, mode in groups],
+                                 2.3, narrow)
+        for axes, rows in zip(panels, groups.values()):
             names = list(dict.fromkeys(row.structure for row in rows))
             apart = 0.19 if len(rows) > len(names) else 0  # of the two kinds of planes
             for row in rows:
-                tight = bool(row.get("tighten"))
-                place = names.index(row.structure) + (apart if tight else -apart)
-                colour = COLOURS.get(row.structure, MUTED)
-                axes.barh(place, row.speedup, height=0.34 if apart else 0.66, zorder=2, edgecolor=colour,
-                          color=colour if tight else PAPER_WHITE, linewidth=1)
-            _one_line(axes)
-            axes.set_yticks(range(len(names)), [NAMES.get(name, name) for name in names], fontsize=8)
-            axes.tick_params(axis="y", length=0, labelleft=narrow or axes is grid.flat[0])
-            axes.invert_yaxis()
-            axes.grid(axis="y", visible=False)
-            axes.set_title(f"{family}, {mode}" if family != "slicing" else "slicing")
-            axes.tick_params(axis="x", labelbottom=True)
-        grid.flat[0].set_xlim(left=0)
-        grid.flat[len(groups) // 2 if not narrow else -1].set_xlabel("times as fast as none at its best", color=MUTED)
+                tight, colour = bool(row.get("tighten")), COLOURS.get(row.structure, MUTED)
+                _bar(axes, names.index(row.structure) + (apart if tight else -apart), row.speedup, edgecolor=colour,
+                     height=0.34 if apart else 0.66, color=colour if tight else PAPER_WHITE, linewidth=1)
+            _name_bars(axes, names)
+        _name_axis(panels, "times as fast as none at its best (log)", narrow)
         return svg(figure, _id("families", bench, volume, narrow))
     return draw
 

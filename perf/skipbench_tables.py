@@ -65,11 +65,19 @@ def figures_to_reach(bench):
         return ""
     rest = folded(f"{plural(len(others), 'figure')} without a goal, for comparison", _figure_lines(others))
     return _figure_lines(judged) + (rest if others else "") + note(
-        "Worked out from the rows of this run. Times are compared within a race: the median over its rounds, each "
-        "frame against the one of the same round.")
+        "Worked out from the rows of this run. Times are compared within a race: the median over its rounds of the "
+        "ratios of two frames of the same round, which may differ from the ratio of two medians.")
 
 
 # Frames
+
+
+def _parameters(bench, volume, marching):
+    """Those of the first mode, and below them those with early exit where they are others."""
+    leaving = bench.one("frames", volume=volume, family="ray casting", mode="early exit", structure=marching.structure)
+    others = leaving.parameters if leaving else marching.parameters
+    differ = f"<br><i>early exit: {esc(others)}</i>" if others != marching.parameters else ""
+    return esc(marching.parameters) + differ
 
 
 def ray_casting(bench, volume):
@@ -80,7 +88,7 @@ def ray_casting(bench, volume):
         head += [f"{mode}, ms", "times as fast", "paper"]
     lines = []
     for first in bench.of("frames", volume=volume, family="ray casting", mode=modes[0]):
-        cells = [first.name, esc(first.parameters)]
+        cells = [first.name, _parameters(bench, volume, first)]
         for mode in modes:
             row = bench.one("frames", volume=volume, family="ray casting", mode=mode, structure=first.structure)
             cells += [f"{figures(row.ms)}<br><i>{span(row.spread, figures)}</i>" if row else MISSING,
@@ -165,10 +173,20 @@ def searched(bench, volume):
     return parts and f'<div class="heats">{"".join(parts)}</div>' + note(
         "Ray casting, marching only, on a picture of half the edge: the least of three frames, in ms; in each cell "
         "the best of all that its two parameters leave open. The fastest five of each structure then raced at full "
-        "size, and the winner is what the other tables use. A level is how many levels below the root a walk begins.")
+        "size, none with them, without early exit and with it, and the winners are what the other tables use. A level is how many levels below the root a walk begins.")
 
 
 # Building
+
+
+def _spread(row, name):
+    """A median, and below it the least and the greatest."""
+    low, high = row.at(name, "min"), row.at(name, "max")
+    return f"{figures(row.at(name, 'median'))}<br><i>{span([low, high], figures)}</i>"
+
+
+def _refusal(reason):
+    return f"<b class=fail>refused</b><small>{esc(reason)}</small>" if reason else MISSING
 
 
 def generation(bench, volume):
@@ -178,25 +196,27 @@ def generation(bench, volume):
     lines = []
     for row in bench.of("structures", volume=volume):
         if row.get("refused"):
-            refused = f"<b class=fail>refused</b><small>{esc(row.get('refused'))}</small>"
-            lines.append([row.name, esc(row.parameters), refused, *[MISSING] * 5])
+            lines.append([row.name, esc(row.parameters), _refusal(row.get("refused")), *[MISSING] * 6])
             continue
         gpu, host, occupied = row.at("gpuBytes"), row.at("hostBytes"), row.at("occupiedFraction")
-        built, updated = (row.at(name, "median") for name in ("buildMs", "updateMs"))
-        lines.append([row.name, esc(row.parameters), figures(built), figures(updated), mib(gpu),
+        lines.append([row.name, esc(row.parameters), _spread(row, "buildMs"),
+                      _spread(row, "gpuBuildMs") if row.get("gpuBuildMs") else _refusal(row.get("gpuRefused")),
+                      figures(row.at("updateMs", "median")), mib(gpu),
                       f"{100 * gpu / texels:.2g} %" if gpu and texels else MISSING, mib(host) if host else MISSING,
                       f"{100 * occupied:.3g} %" if occupied is not None else MISSING])
-    head = ["structure", "parameters", "build, ms", "another TF, ms", "GPU memory",
+    head = ["structure", "parameters", "build on the CPU, ms", "on the GPU, ms", "another TF, ms", "GPU memory",
             "of the volume’s", "host memory", "occupied"]
-    told = f"Medians of builds in turn, from codes that all share{f' ({figures(codes)} ms, once)' if codes else ''}. "
+    told = ("Medians of builds in turn; below them the fastest and the slowest. The CPU begins with codes that all share"
+            f"{f' ({figures(codes)} ms, once)' if codes else ''}, the GPU with the volume’s texture; the GPU’s times end "
+            "when the host has its copy, too. ")
     ours = [row and row.at("buildMs", "median") for row in (
         bench.one("structures", volume=volume, structure=name) for name in ("proximity", "bitfield-octree"))]
     paper = span([data["generation"][0] / data["generation"][3] for data in bench.paper("faludi").get("datasets", [])],
                  lambda value: f"{value:.1f}")
     if all(ours) and paper:
-        told += (f"The proximity cloud takes {ours[0] / ours[1]:.1f} times as long as the bitfield octree here, "
-                 f"{paper} times in the paper, on its GPU. ")
-    return lines and table(head, lines, css="paper bench") + note(
+        told += (f"On the CPU the proximity cloud takes {ours[0] / ours[1]:.1f} times as long as the bitfield octree, "
+                 f"in the paper {paper} times, on its GPU. ")
+    return lines and bleeding(table(head, lines, css="rows bench")) + note(
         told + "“Another TF”: what a structure that does not depend on it takes under a new one; the others are "
         "built anew.")
 
@@ -270,12 +290,12 @@ def sizes(bench):
         for edge in edges:
             row = bench.one("sizes", structure=name, edge=edge)
             if row is None:
-                cells += [MISSING] * 3
+                cells += [MISSING] * 4
             else:
                 cells += ["refused" if row.get("refused") else figures(row.at("buildMs", "median")),
-                          mib(row.at("gpuBytes")), figures(row.ms)]
+                          figures(row.at("gpuBuildMs", "median")), mib(row.at("gpuBytes")), figures(row.ms)]
         lines.append(cells)
     head = ["structure"]
     for edge in edges:
-        head += [f"{edge}³: build, ms", "GPU memory", "frame, ms"]
+        head += [f"{edge}³: CPU build, ms", "GPU build, ms", "GPU memory", "frame, ms"]
     return bleeding(table(head, lines, css="rows bench"))

@@ -44,8 +44,9 @@ def measured():
             "builds": {"always": {"structure": "bitfield-octree", "blockEdge": 4, "ms": 50, "gpuBytes": 600000},
                        "settled": {"structure": "proximity", "blockEdge": 4, "lastMs": 5, "gpuBytes": 110592},
                        "naiveMs": 40},
-            "summary": {"worst_over_octree_frame": worst, "worst_of_single_replays": 1.41,
-                        "worst_added_over_octree_frame": 1.237, "worst_octree_frame_over_median": 1.33, "budget_ms": 12,
+            "summary": {"compared_with": "bitfield-octree", "worst_over_octree_frame": worst,
+                        "worst_of_single_replays": 1.41, "worst_added_over_octree_frame": 1.237,
+                        "worst_octree_frame_over_median": 1.33, "budget_ms": 12,
                         "budget_given": False, "frames_over_budget": 0, "frames_equal": FRAMES, "frames_to_correct": 1,
                         "frame_ms": {"median": 8.5, "p90": 9.5, "max": 10.1},
                         "naive": {"frame_ms": {"median": 47}, "worst_over_octree_frame": 6.6, "frames_over_budget": 90}},
@@ -64,13 +65,40 @@ class EditReportTest(ReportTest):
     def test_says_what_was_found(self):
         page = self.page(measured())
         worst = max(row["frameMs"] / row["octreeMs"] for row in measured()["rows"])
-        for said in (f"{worst:.2f}×", "6.60×", "24 %", "1.33×", "1 frame<", "120 of 120 pictures", "1.41×", "&lt;skull&gt;", "13 × 32",
+        for said in (f"{worst:.2f}×", "6.60×", "23.7 %", "1.33×", "1 frame<", "120 of 120 pictures", "1.41×", "&lt;skull&gt;", "13 × 32",
                      "skipping: bitfield-octree", "skipping: proximity", "1.5 times the median frame"):
             self.assertIn(said, page)
         self.assertNotIn("<skull>", page)
         self.assertEqual(len(re.findall(r'<div class="wide"><svg', page)), 3)
         self.assertEqual(len(re.findall(r'<div class="narrow"><svg', page)), 3)
         self.assertEqual(re.findall(r'(?:src|href)="(?!#|data:)[^"]*"', page), [], "loads nothing from elsewhere")
+
+    def test_names_what_frames_are_compared_with_and_what_served(self):
+        page = self.page(measured())
+        for said in ("of a frame by the bitfield octree at rest", "frames of edits: the bitfield octree (90 frames).",
+                     "the bitfield octree (16 frames) and the proximity cloud (14 frames)", "it took over 2 times.",
+                     "</svg>bitfield octree, made beforehand<", "1.5 times the median frame by the bitfield octree"):
+            self.assertIn(said, page)
+
+        data = measured()
+        data["summary"]["compared_with"] = "partitioned"
+        data["builds"]["always"]["structure"] = "partitioned"
+        del data["builds"]["settled"]
+        for row in data["rows"]:
+            row["structure"] = "none" if row["edit"] else "partitioned"
+        page = self.page(data)
+        self.assertIn("frames of edits: nothing (90 frames). In those without: the partitioned maps (30 frames). The "
+                      "partitioned maps serve under any transfer function, and nothing is rebuilt.", page)
+        self.assertFalse("ctree" in page)  # nor all of the page in a complaint
+
+    def test_without_edits_there_is_no_time_of_one(self):
+        data = measured()
+        data["summary"]["frames_to_correct"] = data["summary"]["edit_frame_ms"] = None
+        for row in data["rows"]:
+            row["edit"] = False
+        page = self.page(data)
+        self.assertNotIn("frames of edits:", page)
+        self.assertNotIn("1 frame<", page)
 
     def test_survives_what_is_not_known(self):
         data = measured()

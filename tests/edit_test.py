@@ -6,6 +6,7 @@ usage: edit_test.py SLABCAST [arguments of unittest]
 
 import csv
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -17,7 +18,7 @@ SLABCAST = None  # the program, from the command line
 SMALL = ("phantom:vessels:32", "--size", "48x40", "--layers-per-plane", "16", "--octree-frames", "1")
 KEYS = {"frame", "step", "edit", "progress", "structure", "frameMs", "parts", "octreeMs", "overOctree", "naiveMs",
         "counters"}
-SUMMARY = {"worst_over_octree_frame", "over_octree_frame", "worst_added_over_octree_frame",
+SUMMARY = {"compared_with", "worst_over_octree_frame", "over_octree_frame", "worst_added_over_octree_frame",
            "worst_octree_frame_over_median", "worst_of_single_replays", "frames", "edits", "budget_ms",
            "frames_over_budget", "frame_ms", "edit_frame_ms", "edit_ms", "octree_frame_ms", "naive",
            "frames_by_structure", "hand_overs"}
@@ -69,6 +70,13 @@ class UsualEditsTest(unittest.TestCase):
         for row in self.rows:
             self.assertLessEqual(KEYS, set(row), row["frame"])
 
+    def test_every_key_is_documented(self):
+        text = (Path(__file__).resolve().parent.parent / "docs" / "reports.md").read_text(encoding="utf-8")
+        known = set(re.findall(r"`([^`]+)`", text))
+        for part in (self.report, self.summary, self.rows[0], self.rows[0]["parts"], self.summary["naive"],
+                     *self.report["builds"].values()):
+            self.assertLessEqual(set(part) if isinstance(part, dict) else set(), known)
+
     def test_all_frames_are_there(self):
         self.assertEqual([row["frame"] for row in self.rows], list(range(60)))
         self.assertEqual(self.summary["frames"], 60)
@@ -93,13 +101,16 @@ class UsualEditsTest(unittest.TestCase):
         structures = {row["structure"] for row in self.rows}
         self.assertLessEqual({"bitfield-octree", "proximity"}, structures)
         for row in self.rows:
-            self.assertFalse(row["edit"] and row["progress"] in ("building", "swapped"), row)
+            self.assertFalse(row["edit"] and row["progress"] in ("building", "incoming", "swapped"), row)
 
     def test_table_has_a_line_per_frame(self):
         with open(self.folder / "edit.csv", newline="", encoding="utf-8") as table:
             lines = list(csv.DictReader(table))
         self.assertEqual([int(line["frame"]) for line in lines], list(range(60)))
         self.assertEqual([line["structure"] for line in lines], [row["structure"] for row in self.rows])
+        for counter in ("fragments", "layers_evaluated", "layers_skipped", "volume_fetches", "skip_fetches",
+                        "stretches", "blocks_visited"):
+            self.assertEqual([int(line[counter]) for line in lines], [row["counters"][counter] for row in self.rows])
 
     def test_page_holds_all_by_itself(self):
         page = (self.folder / "report.html").read_text(encoding="utf-8")
@@ -130,7 +141,36 @@ class ScriptTest(Folder):
         report = self.report()
         self.assertEqual(report["builds"]["always"]["structure"], "minmax-octree")
         self.assertNotIn("settled", report["builds"])
+        self.assertEqual(report["summary"]["compared_with"], "minmax-octree")
+        self.assertIn("by the min-max octree at rest", (self.out / "report.html").read_text(encoding="utf-8"))
         self.assertEqual(report["summary"]["frames_equal"], 20)
+
+
+    def test_what_changes_nothing_is_no_edit(self):
+        """Of one function and itself nothing is interpolated, dragged or put in place, whatever points tell it."""
+        more_points = {"points": [BONE["points"][0], {"value": 150, "color": [1, 0.75, 0.5], "opacity": 0.25},
+                                  BONE["points"][1]]}
+        script = self.script({"start": BONE, "steps": [
+            {"kind": "interpolate", "to": BONE, "frames": 4},
+            {"kind": "opacity", "point": 1, "to": 0.5, "frames": 2},
+            {"kind": "jump", "to": more_points, "frames": 2},
+            {"kind": "interpolate", "to": "linear", "frames": 4},
+            {"kind": "jump", "to": BONE, "frames": 1}]})
+        run = edit(*SMALL, "--script", script, "--verify", "--out", self.out)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual([(row["step"], row["edit"]) for row in self.report()["rows"]], [
+            *[("interpolate", False)] * 4, *[("opacity", False)] * 2, *[("jump", False)] * 2,
+            *[("interpolate", True)] * 4, ("jump", False)])
+
+    def test_without_edits_nothing_is_said_of_them(self):
+        run = edit(*SMALL, "--interpolate", "linear,linear", "--frames", 20, "--verify", "--out", self.out)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        summary = self.report()["summary"]
+        self.assertEqual((summary["edits"], summary["frames_equal"]), (0, 20))
+        for empty in (summary["edit_frame_ms"], summary["edit_ms"], summary["naive"]["edit_frame_ms"],
+                      summary["frames_to_correct"]):
+            self.assertIsNone(empty)
+        self.assertGreater(summary["worst_over_octree_frame"], 0)
 
 
 class RefusalTest(Folder):
@@ -175,8 +215,8 @@ class RefusalTest(Folder):
         self.refuses("pre-classified texels hold the transfer function", "--classify", "preclassified")
 
     def test_structures_that_cannot_serve(self):
-        self.refuses("boolean-octree", "--skip", "boolean-octree")
-        self.refuses("none", "--skip", "none")
+        for structure in ("boolean-octree", "none"):
+            self.refuses(f"--skip: '{structure}' is not one of auto, blocks", "--skip", structure, status=2)
 
 
 if __name__ == "__main__":

@@ -10,11 +10,15 @@ import subprocess
 import sys
 import unittest
 from pathlib import Path
+from types import SimpleNamespace
 
 from report_test import external
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "support"))
 from report_pages import ReportTest  # noqa: E402
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "perf"))
+import skipbench_plots  # noqa: E402
 
 REPORT = Path(__file__).resolve().parent.parent / "perf" / "skipbench_report.py"
 SPEEDUPS = {"none": 1.0, "blocks": 1.6, "proximity": 2.9, "chebyshev": 3.1, "partitioned": 3.0,
@@ -22,6 +26,7 @@ SPEEDUPS = {"none": 1.0, "blocks": 1.6, "proximity": 2.9, "chebyshev": 3.1, "par
 MODES = {"marching only": 40.0, "early exit": 25.0, "shading": 90.0}
 TRANSFERS = {"TF1": "all but the minimum", "TF2": "all", "TF5": "CT <bone>"}
 PARTITIONS = (16, 64, 256)
+NO_COMPUTE = "this device offers 4 storage blocks, <16> are needed"
 REFUSED = "256 partitions take 1.7 GiB, more than the budget of 256 MiB"
 
 
@@ -56,8 +61,9 @@ def frames(volume):
             for structure, speedup in SPEEDUPS.items():
                 for tight in (False, True) if family != "ray casting" and structure != "none" else (False,):
                     ms = MODES[mode] / speedup / (1.4 if tight else 1)
+                    finer = {"blockEdge": 2} if structure == "chebyshev" and mode == "early exit" else {}
                     rows.append({"table": "frames", "volume": volume, "family": family, "mode": mode,
-                                 **parameters(structure), "planes": 7, "layersPerPlane": 64, "tighten": tight,
+                                 **parameters(structure), **finer, "planes": 7, "layersPerPlane": 64, "tighten": tight,
                                  "order": "back-to-front", "frameMs": times(ms), "samples": [ms] * 5,
                                  "speedup": MODES[mode] / ms, "counters": counters(structure)})
     return rows
@@ -72,6 +78,8 @@ def searched(volume):
 
 def built(volume, table="structures", **more):
     return [{"table": table, "volume": volume, **parameters(structure), "buildMs": times(12.0),
+             **({"gpuBuildMs": None, "gpuRefused": NO_COMPUTE} if structure == "partitioned" else
+                {"gpuBuildMs": times(7.5)}),
              "updateMs": times(0.4) if structure.startswith(("min", "bit")) else None, "gpuBytes": 1_200_000,
              "hostBytes": 7_000_000 if structure == "partitioned" else 0, "occupiedFraction": 0.22, **more}
             for structure in SPEEDUPS if structure != "none"]
@@ -128,7 +136,7 @@ def compared():
                    "rauter": {"source": "Someone 2024, table 1", "device": "another",
                               "partitions": [16, 32, 64, 128, 256],
                               "datasets": [{"name": "manix", "update": [[3.5, 0.2, 0.27, 0.42, 0.69, 1.3]] * 6}]}},
-        "rows": rows, "summary": "summary: 1 of 2 figures reached"}
+        "rows": rows, "summary": {"judged": 2, "reached": 1, "volumes": {}}}
 
 
 def write(folder, data):
@@ -190,6 +198,25 @@ class SkipbenchReportTest(ReportTest):
     def test_a_refusal_is_shown_with_its_reason(self):
         text = self.full
         self.assertEqual(text.count(REFUSED), 2)
+
+    def test_parameters_of_early_exit_are_named_where_they_are_others(self):
+        casting = self.full[self.full.index("ray casting</h2>"):self.full.index("work at equal parameters</h2>")]
+        self.assertEqual(re.findall(r"early exit: [^<]*", casting), ["early exit: 2³"])
+
+    def test_builds_on_either_side_with_their_spread(self):
+        text = self.full
+        builds = text[text.index("building and memory</h2>"):text.index("which parameters</h2>")]
+        self.assertEqual(builds.count("<td>7.5<br><i>6.75 – 9</i></td>"), len(SPEEDUPS) - 2)
+        self.assertEqual(builds.count("<td>12<br><i>10.8 – 14.4</i></td>"), len(SPEEDUPS) - 1)
+        self.assertEqual(builds.count(NO_COMPUTE.replace("<", "&lt;").replace(">", "&gt;")), 1)
+
+    def test_bars_start_at_what_none_takes(self):
+        """Also those of what is slower, which lie to the line's other side."""
+        bars = []
+        axes = SimpleNamespace(barh=lambda place, width, left, **_: bars.append((left, left + width)))
+        for speedup in (0.8, 1.0, 3.0):
+            skipbench_plots._bar(axes, 0, speedup)
+        self.assertEqual(bars, [(1, 0.8), (1, 1.0), (1, 3.0)])
 
     def test_lives_without_what_was_not_measured(self):
         data = compared()

@@ -22,6 +22,13 @@ MODES = ["marching only", "early exit", "shading"]
 PARTITIONS = [16, 32, 64, 128, 256]
 TRANSFERS = ["TF1", "TF2", "TF3", "TF4", "TF5", "TF6"]
 KEYS = {"command", "commit", "date", "device", "conditions", "volumes", "figures", "papers", "rows", "summary"}
+FIGURES = {"distance_map_marching_only_speedup", "distance_map_early_exit_speedup",
+           "bitfield_octree_over_distance_map_time", "bitfield_octree_over_minmax_octree_time",
+           "bitfield_octree_over_minmax_octree_blocks_visited", "bitfield_octree_over_minmax_octree_blocks_looked_at",
+           *(f"hybrid_{mode}_{planes}_speedup" for mode in ("early_exit", "marching_only")
+             for planes in ("rectangles", "sphere")),
+           *(f"merge_16_speedup_edge_{edge}" for edge in (4, 2, 1)),
+           "bitfield_octree_256_build_ms", "bitfield_octree_256_memory_share"}
 BUDGET_MIB = 0.03  # 27,648 bytes fit (6^3 blocks x 128, 12^3 x 16), 55,296 do not
 
 
@@ -65,11 +72,20 @@ class SmallRunTest(unittest.TestCase):
         self.assertEqual(set(self.report), KEYS)
         self.assertIn("</html>", (self.folder / "report.html").read_text())
 
-    def test_summary_is_the_last_line(self):
-        self.assertEqual(self.run_.stdout.splitlines()[-1], self.report["summary"])
+    def test_summary_is_of_numbers_and_its_line_the_last(self):
+        summary = self.report["summary"]
         judged = [f for f in self.report["figures"] if f["reached"] is not None]
-        self.assertIn(f"summary: {sum(f['reached'] for f in judged)} of {len(judged)} figures reached",
-                      self.report["summary"])
+        self.assertEqual((summary["judged"], summary["reached"]), (len(judged), sum(f["reached"] for f in judged)))
+        self.assertIn(f"summary: {summary['reached']} of {summary['judged']} figures reached",
+                      self.run_.stdout.splitlines()[-1])
+        figures = summary["volumes"][self.report["volumes"][0]["name"]]
+        self.assertEqual(set(figures), FIGURES)
+        for entry in self.report["figures"]:
+            self.assertEqual(figures[entry["key"]], {k: entry[k] for k in ("value", "goal", "sense", "reached")})
+        # What was not measured is null, not 0: refused partitions, a size that was not asked for.
+        for name in ("merge_16_speedup_edge_1", "bitfield_octree_256_build_ms", "bitfield_octree_256_memory_share"):
+            self.assertIsNone(figures[name]["value"], name)
+            self.assertIsNone(figures[name]["reached"], name)
 
     def test_the_phantom_is_shown_by_its_own_preset(self):
         self.assertEqual([v["transferFunction"] for v in self.report["volumes"]], ["Gap"])
@@ -113,15 +129,31 @@ class SmallRunTest(unittest.TestCase):
             self.assertEqual(len(tried), len(set(tried)))
             self.assertGreaterEqual(len(tried), 4)
             best = self.one("structures", structure=structure)
-            finals = self.of("finals", structure=structure)
-            fastest = max(finals, key=lambda row: row["speedup"])
-            for key in ("blockEdge", "initialLevel", "traversal"):
-                self.assertEqual(best[key], fastest[key], structure)
+            for mode in MODES[:2]:
+                fastest = max(self.of("finals", structure=structure, mode=mode), key=lambda row: row["speedup"])
+                drawn = self.one("frames", structure=structure, family="ray casting", mode=mode)
+                for key in ("blockEdge", "initialLevel", "traversal"):
+                    self.assertEqual(drawn[key], fastest[key], (structure, mode))
+                    if mode == "marching only":
+                        self.assertEqual(best[key], fastest[key], structure)
+
+    def test_finals_are_ratios_to_none(self):
+        for structure in ["blocks", "proximity", "chebyshev", *OCTREES]:
+            for mode in MODES[:2]:
+                rows = self.of("finals", finalsOf=structure, mode=mode)
+                self.assertEqual([row["structure"] for row in rows], ["none"] + [structure] * (len(rows) - 1))
+                for row in rows:
+                    self.assertAlmostEqual(row["speedup"], paired(rows[0], row), places=9)
 
     def test_what_structures_take(self):
         for structure in STRUCTURES[1:]:
             row = self.one("structures", structure=structure)
-            self.assertGreater(row["buildMs"]["median"], 0)
+            for name in ("buildMs", "gpuBuildMs"):
+                self.assertGreater(row[name]["min"], 0)
+                self.assertLessEqual(row[name]["min"], row[name]["median"])
+                self.assertLessEqual(row[name]["median"], row[name]["max"])
+                self.assertIn(row[name]["n"], (1, 2, 3))
+            self.assertNotIn("gpuRefused", row)
             self.assertGreater(row["gpuBytes"], 0)
         self.assertGreater(self.one("structures", structure="partitioned")["hostBytes"], 0)
 

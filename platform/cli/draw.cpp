@@ -1,11 +1,11 @@
 #include "platform/cli/draw.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include <fmt/core.h>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "core/base/stopwatch.h"
 #include "core/frame/ratio_tuner.h"
 #include "core/gl/api.h"
 #include "platform/cli/progress.h"
@@ -173,14 +173,13 @@ Result<double> Stage::drawTimed(const FramePlan& plan, double turnDegrees) {
 Result<double> Stage::drawOn(glm::vec4 clear, const FramePlan& plan, double turnDegrees) {
     target_.begin(clear);
     gl::Finish();
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     Result<void> drawn = renderer_.draw(scene(), plan, views(turnDegrees));
     if (!drawn) {
         return tl::unexpected(drawn.error());
     }
     gl::Finish();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-        .count();
+    return watch.ms();
 }
 
 Result<std::vector<glm::dvec4>> Stage::drawOnNothing(const FramePlan& plan) {
@@ -289,6 +288,9 @@ nlohmann::json toJson(const FramePlan& plan) {
 }
 
 nlohmann::json toJson(const FrameTimes& t) {
+    if (t.count == 0) {
+        return nullptr;
+    }
     return {{"median", t.median}, {"min", t.min}, {"max", t.max},
             {"p10", t.p10},       {"p90", t.p90}, {"n", t.count}};
 }

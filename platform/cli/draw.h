@@ -88,7 +88,7 @@ FrameTimes summarise(std::vector<double> milliseconds);
 nlohmann::json toJson(const gl::Caps& caps);
 nlohmann::json toJson(const VolumeInfo& info);
 nlohmann::json toJson(const FramePlan& plan);
-nlohmann::json toJson(const FrameTimes& times);
+nlohmann::json toJson(const FrameTimes& times);              // null of none
 nlohmann::json toJson(const Result<WorkCounters>& counters); // null where they cannot be had
 std::string commit(); // that was built; defined in a source that the build writes
 

@@ -65,7 +65,8 @@ private:
     Renderer policysRenderer_, othersRenderer_;
     Settings settings_; // with the ratio decided
     SkipOptions naiveSkip_;
-    double lastDrawMs_ = 0.0; // by the policy
+    double lastDrawMs_ = 0.0;           // by the policy
+    std::optional<FramePlan> lastPlan_; // of what it drew last
     gl::ColorTargets target_;
     Scene live_, octree_, naive_;
 };

@@ -7,6 +7,7 @@
 #include "platform/cli/edit_summary.h"
 #include "platform/cli/progress.h"
 #include "platform/cli/report_files.h"
+#include "platform/cli/skip_options.h"
 #include "platform/io/atomic_file.h"
 #include "platform/io/json_checks.h"
 
@@ -16,21 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-/// What --skip names serves once a TF has settled or, where it depends on none, always.
-LiveOptions liveOptions(const EditOptions& options) {
-    LiveOptions live{.quietFrames = options.quietFrames};
-    const auto asked = [&](SkipStructure structure) {
-        SkipOptions skip = options.skip;
-        skip.structure = structure;
-        return skip;
-    };
-    const SkipStructure named = options.settings.skip.value_or(live.settled.structure);
-    const bool dependsOnTransfer = infoOf(named).dependsOnTransfer;
-    live.always = asked(dependsOnTransfer ? live.always.structure : named);
-    live.settled = asked(dependsOnTransfer ? named : SkipStructure::None);
-    return live;
-}
 
 /// The start is the script's own, or what --tf says.
 Result<EditScript> scriptOf(const EditOptions& options, const Stage& stage) {
@@ -137,6 +123,7 @@ constexpr CsvColumn kColumns[] = {{"frame", "/frame"},
                                   {"prepare_ms", "/parts/prepareMs"},
                                   {"draw_ms", "/parts/drawMs"},
                                   {"octree_ms", "/octreeMs"},
+                                  {"octree_worst_ms", "/octreeWorstMs"},
                                   {"over_octree", "/overOctree"},
                                   {"naive_ms", "/naiveMs"},
                                   {"equal", "/equal"},
@@ -144,7 +131,9 @@ constexpr CsvColumn kColumns[] = {{"frame", "/frame"},
                                   {"layers_evaluated", "/counters/layers_evaluated"},
                                   {"layers_skipped", "/counters/layers_skipped"},
                                   {"volume_fetches", "/counters/volume_fetches"},
-                                  {"skip_fetches", "/counters/skip_fetches"}};
+                                  {"skip_fetches", "/counters/skip_fetches"},
+                                  {"stretches", "/counters/stretches"},
+                                  {"blocks_visited", "/counters/blocks_visited"}};
 
 Result<void> write(const fs::path& folder, const json& report) {
     return writeFileAtomically(folder / "edit.csv", csvOf(report["rows"], kColumns))
@@ -167,7 +156,8 @@ Result<void> verdict(const std::vector<EditRow>& rows, const std::string& folder
 } // namespace
 
 Result<void> editCommand(const EditOptions& options, const std::string& command) {
-    const LiveOptions live = liveOptions(options);
+    LiveOptions live = liveOptions(options);
+    live.quietFrames = options.quietFrames;
     SceneOptions opened = options;
     opened.settings.skip = SkipStructure::None; // the bench's scenes have what they need
     opened.settings.tighten = false;
@@ -202,6 +192,7 @@ Result<void> editCommand(const EditOptions& options, const std::string& command)
     }
     const std::vector<EditRow> rows = mediansOf(replays);
     report["summary"] = summaryOf(rows, options);
+    report["summary"]["compared_with"] = name(live.always.structure); // what "octree" stands for
     report["summary"]["worst_of_single_replays"] = worstOverOctree(replays);
     for (const EditRow& row : rows) {
         report["rows"].push_back(toJson(row, report["rows"].size()));

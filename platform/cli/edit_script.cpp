@@ -1,10 +1,5 @@
 #include "platform/cli/edit_script.h"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <random>
-
 #include <fmt/core.h>
 
 #include "platform/io/json_checks.h"
@@ -17,110 +12,6 @@ namespace {
 using nlohmann::json;
 
 constexpr JsonRange kFrameCount = {1, 100000};
-
-TransferPoint mixed(const TransferPoint& a, const TransferPoint& b, double weight) {
-    return {a.value, glm::mix(a.color, b.color, weight), std::lerp(a.opacity, b.opacity, weight)};
-}
-
-/// What the TF is at a value, of two points there the first or the second.
-TransferPoint sideOf(const TransferFunction& tf, double value, bool second) {
-    const auto [first, end] = std::equal_range(
-        tf.points.begin(), tf.points.end(), TransferPoint{.value = value},
-        [](const TransferPoint& a, const TransferPoint& b) { return a.value < b.value; });
-    if (first != end) {
-        return second ? *(end - 1) : *first;
-    }
-    const TransferSample sample = evaluate(tf, value);
-    return {value, sample.color, sample.opacity};
-}
-
-bool isStep(const TransferFunction& tf, double value) {
-    return std::count_if(tf.points.begin(), tf.points.end(),
-                         [=](const TransferPoint& p) { return p.value == value; }) > 1;
-}
-
-/// The same material by another unit of length.
-TransferFunction inUnit(TransferFunction tf, double opacityUnitMm) {
-    if (tf.opacityUnitMm != opacityUnitMm) {
-        for (TransferPoint& point : tf.points) {
-            point.opacity = 1.0 - std::pow(1.0 - point.opacity, opacityUnitMm / tf.opacityUnitMm);
-        }
-        tf.opacityUnitMm = opacityUnitMm;
-    }
-    return tf;
-}
-
-/// Opaque in the middle of [low, high], shares of the data's range, and nothing outside.
-TransferFunction band(const VolumeStatistics& data, double low, double high, glm::dvec3 color) {
-    const auto at = [&](double share) { return std::lerp(data.min, data.max, share); };
-    return {.name = fmt::format("band {:.2f} to {:.2f}", low, high),
-            .points = {{at(low), color, 0.0},
-                       {at((low + high) / 2.0), color, 0.5},
-                       {at(high), color, 0.0}}};
-}
-
-/// A script in the making: steps add frames and leave a TF.
-class Writer {
-public:
-    Writer(TransferFunction start, const VolumeStatistics& data)
-        : data_(data), now_(start), script_{std::move(start), {}} {}
-
-    void pause(int frames) { rest("pause", frames); }
-
-    void interpolate(const TransferFunction& to, double periods, int frames) {
-        const TransferFunction from = now_;
-        for (int k = 1; k <= frames; ++k) {
-            const double phase = 2.0 * std::numbers::pi * periods * k / frames;
-            edit("interpolate", mixed(from, to, (1.0 - std::cos(phase)) / 2.0));
-        }
-    }
-
-    void dragOpacity(std::size_t point, double to, int frames) {
-        const double from = now_.points[point].opacity;
-        for (int k = 1; k <= frames; ++k) {
-            TransferFunction tf = now_;
-            tf.points[point].opacity = std::lerp(from, to, static_cast<double>(k) / frames);
-            edit("opacity", std::move(tf));
-        }
-    }
-
-    void jump(TransferFunction to, int frames) {
-        edit("jump", std::move(to));
-        rest("jump", frames - 1);
-    }
-
-    void random(std::uint32_t seed, int every, int frames) {
-        std::mt19937 engine(seed);
-        const auto unit = [&] { return std::ldexp(static_cast<double>(engine()), -32); };
-        for (int k = 0; k < frames; ++k) {
-            if (k % every != 0) {
-                rest("random", 1);
-                continue;
-            }
-            const double low = 0.95 * unit();
-            const double high = low + 0.01 + (1.0 - low) * unit() / 2.0;
-            const double red = unit();
-            const double green = unit();
-            edit("random", band(data_, low, high, {red, green, unit()}));
-        }
-    }
-
-    const TransferFunction& now() const { return now_; }
-    EditScript take() { return std::move(script_); }
-
-private:
-    void edit(const char* step, TransferFunction tf) {
-        now_ = std::move(tf);
-        script_.frames.push_back({step, now_});
-    }
-    void rest(const char* step, int frames) {
-        script_.frames.insert(script_.frames.end(), frames, {step, std::nullopt});
-    }
-
-    const VolumeStatistics& data_;
-    TransferFunction now_;
-    EditScript script_;
-};
 
 /// Reads a script's entries; complaints name them.
 struct Reader {
@@ -155,15 +46,15 @@ struct Reader {
     }
 };
 
-using AddStep = Checked<void> (*)(Writer&, const Reader&, const json&, const std::string& at,
+using AddStep = Checked<void> (*)(EditWriter&, const Reader&, const json&, const std::string& at,
                                   int frames);
 
-Checked<void> addPause(Writer& writer, const Reader&, const json& step, const std::string& at,
+Checked<void> addPause(EditWriter& writer, const Reader&, const json& step, const std::string& at,
                        int frames) {
     return checkKeys(step, at, {"kind", "frames"}).map([&] { writer.pause(frames); });
 }
 
-Checked<void> addInterpolation(Writer& writer, const Reader& reader, const json& step,
+Checked<void> addInterpolation(EditWriter& writer, const Reader& reader, const json& step,
                                const std::string& at, int frames) {
     double periods = 1.0;
     return checkKeys(step, at, {"kind", "frames", "to", "periods"})
@@ -177,7 +68,7 @@ Checked<void> addInterpolation(Writer& writer, const Reader& reader, const json&
         .map([&](const TransferFunction& to) { writer.interpolate(to, periods, frames); });
 }
 
-Checked<void> addOpacity(Writer& writer, const Reader&, const json& step, const std::string& at,
+Checked<void> addOpacity(EditWriter& writer, const Reader&, const json& step, const std::string& at,
                          int frames) {
     const auto last = static_cast<double>(writer.now().points.size()) - 1.0;
     int point = 0;
@@ -192,14 +83,14 @@ Checked<void> addOpacity(Writer& writer, const Reader&, const json& step, const 
         .map([&](double to) { writer.dragOpacity(static_cast<std::size_t>(point), to, frames); });
 }
 
-Checked<void> addJump(Writer& writer, const Reader& reader, const json& step, const std::string& at,
-                      int frames) {
+Checked<void> addJump(EditWriter& writer, const Reader& reader, const json& step,
+                      const std::string& at, int frames) {
     return checkKeys(step, at, {"kind", "frames", "to"})
         .and_then([&] { return reader.transfer(step, at, "to"); })
         .map([&](const TransferFunction& to) { writer.jump(to, frames); });
 }
 
-Checked<void> addRandom(Writer& writer, const Reader& reader, const json& step,
+Checked<void> addRandom(EditWriter& writer, const Reader& reader, const json& step,
                         const std::string& at, int frames) {
     int seed = 1;
     return checkKeys(step, at, {"kind", "frames", "seed", "every"})
@@ -219,7 +110,7 @@ constexpr std::pair<const char*, AddStep> kKinds[] = {{"pause", addPause},
                                                       {"jump", addJump},
                                                       {"random", addRandom}};
 
-Checked<void> addStep(Writer& writer, const Reader& reader, const json& step,
+Checked<void> addStep(EditWriter& writer, const Reader& reader, const json& step,
                       const std::string& at) {
     if (!step.is_object()) {
         return complain(at, fmt::format("is {}, expected an object", step.type_name()));
@@ -252,7 +143,7 @@ Checked<EditScript> read(const json& document, const Reader& reader, const Volum
     if (steps == document.end() || !steps->is_array() || steps->empty()) {
         return complain("steps", "expected a list of at least one step");
     }
-    Writer writer(std::move(*start), data);
+    EditWriter writer(std::move(*start), data);
     for (std::size_t k = 0; k < steps->size(); ++k) {
         const std::string at = fmt::format("steps[{}]", k);
         if (Checked<void> added = addStep(writer, reader, (*steps)[k], at); !added) {
@@ -263,28 +154,6 @@ Checked<EditScript> read(const json& document, const Reader& reader, const Volum
 }
 
 } // namespace
-
-TransferFunction mixed(const TransferFunction& a, const TransferFunction& b, double weight) {
-    const TransferFunction other = inUnit(b, a.opacityUnitMm);
-    std::vector<double> values;
-    for (const TransferFunction* tf : {&a, &other}) {
-        for (const TransferPoint& point : tf->points) {
-            values.push_back(point.value);
-        }
-    }
-    std::sort(values.begin(), values.end());
-    values.erase(std::unique(values.begin(), values.end()), values.end());
-    TransferFunction tf{.name = "interpolated", .unit = a.unit, .opacityUnitMm = a.opacityUnitMm};
-    for (const double value : values) {
-        for (const bool second : {false, true}) {
-            if (!second || isStep(a, value) || isStep(other, value)) {
-                tf.points.push_back(
-                    mixed(sideOf(a, value, second), sideOf(other, value, second), weight));
-            }
-        }
-    }
-    return tf;
-}
 
 Result<EditScript> parseEditScript(std::string_view text, const std::string& sourceName,
                                    const TransferByName& byName, const VolumeStatistics& data) {
@@ -297,36 +166,6 @@ Result<EditScript> parseEditScript(std::string_view text, const std::string& sou
             }
             return std::move(*script);
         });
-}
-
-EditScript interpolation(const TransferFunction& a, const TransferFunction& b, int frames) {
-    static constexpr VolumeStatistics kAny;
-    const int rest = frames / 8;
-    const int half = (frames - 2 * rest) / 2;
-    Writer writer(a, kAny);
-    writer.interpolate(b, 0.5, half);
-    writer.pause(rest);
-    writer.interpolate(a, 0.5, frames - 2 * rest - half);
-    writer.pause(rest);
-    return writer.take();
-}
-
-EditScript usualScript(const TransferFunction& start, const VolumeStatistics& data, int frames) {
-    const int part = std::max(1, frames / 10);
-    const auto strongest = std::max_element(
-        start.points.begin(), start.points.end(),
-        [](const TransferPoint& a, const TransferPoint& b) { return a.opacity < b.opacity; });
-    Writer writer(start, data);
-    writer.interpolate(band(data, 0.1, 0.5, {0.4, 0.8, 1.0}), 1.0, 2 * part);
-    writer.pause(part);
-    writer.jump(start, part);
-    writer.dragOpacity(static_cast<std::size_t>(strongest - start.points.begin()),
-                       strongest->opacity / 10.0, part);
-    writer.jump(band(data, 0.3, 0.4, {1.0, 0.6, 0.3}), part);
-    writer.jump(band(data, 0.6, 0.7, {0.3, 1.0, 0.6}), part);
-    writer.random(1, 1, part);
-    writer.pause(std::max(1, frames - 8 * part));
-    return writer.take();
 }
 
 } // namespace slabcast

@@ -1,33 +1,15 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "core/transfer/transfer_function.h"
-#include "core/volume/statistics.h"
+#include "platform/cli/edit_writer.h"
 
 namespace slabcast {
 
-/// What happens before one frame of a replayed edit.
-struct EditFrame {
-    std::string step;                            // of the script
-    std::optional<TransferFunction> newTransfer; // none: nothing is edited
-};
-
-struct EditScript {
-    TransferFunction start;
-    std::vector<EditFrame> frames;
-};
-
 /// A preset's name or a file as a TF.
 using TransferByName = std::function<Result<TransferFunction>(const std::string& name)>;
-
-/// Both at once: piecewise linear as they are, over the points of either, `weight` of `b`.
-/// Opacities are those of `a`'s unit of length. Source: Faludi et al. 2021, section 4.5.
-TransferFunction mixed(const TransferFunction& a, const TransferFunction& b, double weight);
 
 /// As a script:
 /// {"start": TF, "steps": [{"kind": KIND, "frames": N, ...}, ...]}
@@ -43,11 +25,5 @@ TransferFunction mixed(const TransferFunction& a, const TransferFunction& b, dou
 /// edit_test.py
 Result<EditScript> parseEditScript(std::string_view text, const std::string& sourceName,
                                    const TransferByName& byName, const VolumeStatistics& data);
-
-/// From one TF to the other and back, resting at both: of so many frames.
-EditScript interpolation(const TransferFunction& a, const TransferFunction& b, int frames);
-
-/// Something of every kind, whatever the volume.
-EditScript usualScript(const TransferFunction& start, const VolumeStatistics& data, int frames);
 
 } // namespace slabcast

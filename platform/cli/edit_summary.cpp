@@ -32,7 +32,8 @@ std::int64_t over(const std::vector<double>& ms, double budgetMs) {
     return std::count_if(ms.begin(), ms.end(), [=](double one) { return one > budgetMs; });
 }
 
-/// From each edit to the first frame that equals one from scratch, that frame counted.
+/// From each edit to the first frame that equals one from scratch, that frame counted; of the
+/// edit that took most. null without edits.
 json framesToCorrect(const std::vector<EditRow>& rows) {
     std::size_t most = 0;
     for (std::size_t edit = 0; edit < rows.size(); ++edit) {
@@ -44,7 +45,7 @@ json framesToCorrect(const std::vector<EditRow>& rows) {
                          [](const EditRow& row) { return row.equal.value_or(false); });
         most = std::max(most, static_cast<std::size_t>(correct - rows.begin()) - edit + 1);
     }
-    return most;
+    return most > 0 ? json(most) : json();
 }
 
 } // namespace

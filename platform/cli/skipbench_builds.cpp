@@ -1,44 +1,83 @@
 #include "platform/cli/skipbench_builds.h"
 
-#include <chrono>
+#include <algorithm>
+#include <functional>
 #include <optional>
+
+#include "core/base/stopwatch.h"
 
 namespace slabcast {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 
-/// One structure's builds so far.
+/// Why a structure cannot be had on one side: too large, or beyond the device.
+constexpr ErrorCode kRefusals[] = {ErrorCode::VolumeTooLarge, ErrorCode::DeviceUnsupported,
+                                   ErrorCode::DeviceOutOfMemory};
+
+constexpr double kBuildsMs = 2.5e3; // of a structure on one side, after which one more is too many
+/// A software driver's shaders take seconds for so many, a graphics processor's milliseconds.
+constexpr std::int64_t kMostSoftwareVoxels = 1 << 24;
+
+/// One structure's builds on one side so far.
 struct Builds {
     std::vector<double> ms, updateMs;
+    double spentMs = 0.0;
     std::optional<BuiltSkip> last;
     std::string refused;
+
+    /// Once more, where there is time and it was not refused. One that is not `counted` touches
+    /// memory for the first time and compiles what it needs: it counts where it is to be the last.
+    Result<void> again(const std::function<Result<BuiltSkip>()>& build, bool counted) {
+        if (!refused.empty() || spentMs > kBuildsMs) {
+            return {};
+        }
+        last.reset(); // two of a kind may not fit
+        Result<BuiltSkip> built = build();
+        if (!built) {
+            if (std::ranges::find(kRefusals, built.error().code) == std::end(kRefusals)) {
+                return tl::unexpected(built.error());
+            }
+            refused = built.error().detail;
+            return {};
+        }
+        spentMs += built->buildMs;
+        if (counted || spentMs > kBuildsMs) {
+            ms.push_back(built->buildMs);
+            updateMs.push_back(built->updateMs);
+        }
+        last = std::move(*built);
+        return {};
+    }
 };
 
-json rowOf(const Builds& builds, const SkipOptions& options, json row) {
+json rowOf(const Builds& cpu, const Builds& gpu, const SkipOptions& options, json row) {
     row.update(toJson(options));
-    if (!builds.last) {
-        row["refused"] = builds.refused;
+    row["gpuBuildMs"] = toJson(summarise(gpu.ms));
+    if (!gpu.last) {
+        row["gpuRefused"] = gpu.refused;
+    }
+    if (!cpu.last) {
+        row["refused"] = cpu.refused;
         return row;
     }
-    row.update({{"buildMs", toJson(summarise(builds.ms))},
-                {"updateMs", infoOf(options.structure).dependsOnTransfer
-                                 ? json()
-                                 : toJson(summarise(builds.updateMs))},
-                {"gpuBytes", gpuBytes(*builds.last)},
-                {"hostBytes", hostBytes(*builds.last)},
-                {"occupiedFraction", builds.last->occupiedFraction}});
+    row.update(
+        {{"buildMs", toJson(summarise(cpu.ms))},
+         {"updateMs",
+          infoOf(options.structure).dependsOnTransfer ? json() : toJson(summarise(cpu.updateMs))},
+         {"gpuBytes", gpuBytes(*cpu.last)},
+         {"hostBytes", hostBytes(*cpu.last)},
+         {"occupiedFraction", cpu.last->occupiedFraction}});
     return row;
 }
 
 } // namespace
 
-Workshop::Workshop(const Stage& stage) : stage_(stage) {
-    const auto start = Clock::now();
+Workshop::Workshop(Stage& stage) : stage_(stage) {
+    const Stopwatch watch;
     codes_ = encodeCodes(stage.scene().texels());
-    codesMs_ = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    codesMs_ = watch.ms();
 }
 
 CellVisibility Workshop::visibilityUnder(const Scene& scene) const {
@@ -46,37 +85,43 @@ CellVisibility Workshop::visibilityUnder(const Scene& scene) const {
                           filterErrorSampled(stage_.session(), scene.texels().format));
 }
 
-Result<json> buildRows(const Workshop& workshop, const Scene& scene,
+Result<BuiltSkip> Workshop::buildOnGpu(const SkipOptions& options) const {
+    const glm::i64vec3 dims(stage_.info().dims);
+    if (stage_.session().caps.isSoftware && dims.x * dims.y * dims.z > kMostSoftwareVoxels) {
+        return fail(ErrorCode::DeviceUnsupported,
+                    "a software driver takes minutes for so many voxels: not measured");
+    }
+    Scene scene = stage_.scene();
+    return stage_.renderer().buildSkip(scene, options).map([&] { return scene.skip(); });
+}
+
+Result<json> buildRows(const Workshop& workshop, const CellVisibility& visibility,
                        const std::vector<SkipOptions>& structures, int rounds, const json& row) {
-    const CellVisibility visibility = workshop.visibilityUnder(scene);
-    std::vector<Builds> all(structures.size());
-    for (int round = -1; round < rounds; ++round) { // -1: touches memory for the first time
-        for (std::size_t k = 0; k < structures.size(); ++k) {
-            Builds& builds = all[k];
-            if (!builds.refused.empty()) {
-                continue;
-            }
-            builds.last.reset(); // two of a kind may not fit
-            Result<BuiltSkip> built = workshop.build(structures[k], visibility);
-            if (!built && built.error().code != ErrorCode::VolumeTooLarge) {
+    struct Sides {
+        SkipOptions options;
+        Builds cpu, gpu;
+    };
+    std::vector<Sides> all;
+    for (const SkipOptions& options : structures) {
+        if (options.structure != SkipStructure::None) {
+            all.push_back({options, {}, {}});
+        }
+    }
+    for (int round = -1; round < rounds; ++round) {
+        for (auto& [options, cpu, gpu] : all) {
+            const Result<void> built =
+                cpu.again([&] { return workshop.build(options, visibility); }, round >= 0)
+                    .and_then([&] {
+                        return gpu.again([&] { return workshop.buildOnGpu(options); }, round >= 0);
+                    });
+            if (!built) {
                 return tl::unexpected(built.error());
             }
-            if (!built) {
-                builds.refused = built.error().detail;
-                continue;
-            }
-            if (round >= 0) {
-                builds.ms.push_back(built->buildMs);
-                builds.updateMs.push_back(built->updateMs);
-            }
-            builds.last = std::move(*built);
         }
     }
     json rows = json::array();
-    for (std::size_t k = 0; k < structures.size(); ++k) {
-        if (structures[k].structure != SkipStructure::None) {
-            rows.push_back(rowOf(all[k], structures[k], row));
-        }
+    for (const auto& [options, cpu, gpu] : all) {
+        rows.push_back(rowOf(cpu, gpu, options, row));
     }
     return rows;
 }

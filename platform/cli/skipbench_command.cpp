@@ -26,6 +26,7 @@ constexpr CsvColumn kColumns[] = {{"table", "/table"},
                                   {"edge", "/edge"},
                                   {"family", "/family"},
                                   {"mode", "/mode"},
+                                  {"finals_of", "/finalsOf"},
                                   {"structure", "/structure"},
                                   {"block_edge", "/blockEdge"},
                                   {"bits", "/bits"},
@@ -41,6 +42,12 @@ constexpr CsvColumn kColumns[] = {{"table", "/table"},
                                   {"search_ms", "/ms"},
                                   {"speedup", "/speedup"},
                                   {"build_ms", "/buildMs/median"},
+                                  {"build_ms_min", "/buildMs/min"},
+                                  {"build_ms_max", "/buildMs/max"},
+                                  {"gpu_build_ms", "/gpuBuildMs/median"},
+                                  {"gpu_build_ms_min", "/gpuBuildMs/min"},
+                                  {"gpu_build_ms_max", "/gpuBuildMs/max"},
+                                  {"gpu_refused", "/gpuRefused"},
                                   {"build_of_ranges_ms", "/ofRangesMs/median"},
                                   {"init_ms", "/initMs"},
                                   {"update_ms", "/updateMs/median"},
@@ -119,23 +126,27 @@ Result<void> measureVolume(SkipBench& bench, const std::string& input, json& vol
     }
     const Workshop workshop(bench.stage);
     volumes.push_back(describe(bench.stage, input, bench.volume, workshop));
-    const Result<std::vector<SkipOptions>> best = searchParameters(bench);
+    const Result<BestParameters> best = searchParameters(bench);
     if (!best) {
         return tl::unexpected(best.error());
     }
     bench.progress.show(bench.volume + ": building");
-    const Result<json> builds =
-        buildRows(workshop, bench.stage.scene(), *best, kFewestFrames, bench.row("structures"));
+    const Result<json> builds = buildRows(workshop, workshop.visibilityUnder(bench.stage.scene()),
+                                          best->marching, kFewestFrames, bench.row("structures"));
     if (!builds) {
         return tl::unexpected(builds.error());
     }
     bench.rows.insert(bench.rows.end(), builds->begin(), builds->end());
     std::vector<Refusal> refused; // rows of the table before name them
-    const Result<std::vector<Subject>> subjects = subjectsOf(bench.stage, *best, refused);
-    if (!subjects) {
-        return tl::unexpected(subjects.error());
+    Result<std::vector<Subject>> marching = subjectsOf(bench.stage, best->marching, refused);
+    if (!marching) {
+        return tl::unexpected(marching.error());
     }
-    return measureFrames(bench, *subjects).and_then([&] {
+    Result<std::vector<Subject>> terminating = subjectsOf(bench.stage, best->terminating, refused);
+    if (!terminating) {
+        return tl::unexpected(terminating.error());
+    }
+    return measureFrames(bench, {std::move(*marching), std::move(*terminating)}).and_then([&] {
         return measureMerging(bench, workshop);
     });
 }
@@ -229,8 +240,7 @@ Result<void> skipbenchCommand(const SkipbenchOptions& options, const std::string
     if (!report) {
         return tl::unexpected(report.error());
     }
-    const std::string summary = summaryOf((*report)["figures"]);
-    (*report)["summary"] = summary;
+    (*report)["summary"] = summaryOf((*report)["figures"]);
     const std::vector<CsvColumn> columns = columnsOf({kColumns, kMeasuredColumns});
     return writeFileAtomically(folder.path() / "skipbench.csv", csvOf((*report)["rows"], columns))
         .and_then([&] {
@@ -240,7 +250,7 @@ Result<void> skipbenchCommand(const SkipbenchOptions& options, const std::string
             return writePage(folder.path(), "skipbench_report.py",
                              "skipbench.json and skipbench.csv");
         })
-        .map([&] { fmt::print("{}\n", summary); });
+        .map([&] { fmt::print("{}\n", lineOf((*report)["summary"], (*report)["figures"])); });
 }
 
 } // namespace slabcast

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "platform/cli/skipbench_race.h"
 
@@ -67,19 +66,27 @@ Value pairedTimes(const json* a, const json* b) {
 
 enum class Goal { AtLeast, AtMost };
 
-json figure(std::string name, const json& volume, Value value, std::optional<double> goal,
-            Goal sense, std::string from) {
+/// `key`: of summaries, for programs; `name`: for people.
+json figure(std::string key, std::string name, const json& volume, Value value,
+            std::optional<double> goal, Goal sense, std::string from) {
     json reached;
     if (value && goal) {
         reached = sense == Goal::AtLeast ? *value >= *goal : *value <= *goal;
     }
-    return {{"name", std::move(name)},
+    return {{"key", std::move(key)},
+            {"name", std::move(name)},
             {"volume", volume["name"]},
             {"value", value ? json(*value) : json()},
             {"goal", goal ? json(*goal) : json()},
             {"sense", sense == Goal::AtLeast ? ">=" : "<="},
             {"reached", std::move(reached)},
             {"from", std::move(from)}};
+}
+
+/// As keys have it: "early exit" is early_exit.
+std::string keyOf(std::string words) {
+    std::replace(words.begin(), words.end(), ' ', '_');
+    return words;
 }
 
 /// Skull CT under bone is what most goals were set for.
@@ -117,15 +124,18 @@ void addRayCasting(json& figures, const json& rows, const json& volume) {
     for (const auto& [mode, goal] : {std::pair{"marching only", 2.0}, {"early exit", 3.0}}) {
         const json* map = cast.distanceMap(mode);
         figures.push_back(figure(
+            fmt::format("distance_map_{}_speedup", keyOf(mode)),
             fmt::format("distance map against none, {}", mode), volume, numberAt(map, "/speedup"),
             goalIf(bone, goal), Goal::AtLeast,
             fmt::format("times as fast; {}", map ? map->value("structure", "") : "not measured")));
     }
     const Value bitfield = cast.ofDistanceMap("bitfield-octree");
     const Value minMax = cast.ofDistanceMap("minmax-octree");
-    figures.push_back(figure("bitfield octree against the distance map, marching only", volume,
+    figures.push_back(figure("bitfield_octree_over_distance_map_time",
+                             "bitfield octree against the distance map, marching only", volume,
                              bitfield, goalIf(bone, 1.7), Goal::AtMost, "its time over the map's"));
-    figures.push_back(figure("bitfield octree against the min-max octree, marching only", volume,
+    figures.push_back(figure("bitfield_octree_over_minmax_octree_time",
+                             "bitfield octree against the min-max octree, marching only", volume,
                              quotient(bitfield, minMax), goalIf(bone, 1.0), Goal::AtMost,
                              "as multiples of the distance map's time"));
 }
@@ -149,6 +159,7 @@ void addBlocks(json& figures, const json& rows, const json& volume) {
         {"blocks looked at", "/counters/stretches", "those, and nodes leapt over", std::nullopt}};
     for (const auto& kind : kinds) {
         figures.push_back(figure(
+            fmt::format("bitfield_octree_over_minmax_octree_{}", keyOf(kind.name)),
             fmt::format("bitfield octree against the min-max octree, {}", kind.name), volume,
             quotient(work("bitfield-octree", kind.counter), work("minmax-octree", kind.counter)),
             kind.goal, Goal::AtMost, fmt::format("{}; leaves of 4 voxels, 32 bits", kind.from)));
@@ -156,14 +167,14 @@ void addBlocks(json& figures, const json& rows, const json& volume) {
 }
 
 /// The best of these rows against none at its best ratio.
-json hybridFigure(const std::vector<const json*>& rows, const json& volume, const std::string& name,
-                  std::optional<double> goal) {
+json hybridFigure(const std::vector<const json*>& rows, const json& volume, std::string key,
+                  std::string name, std::optional<double> goal) {
     const json* best = fastest(rows);
     const std::string by = best ? fmt::format("{}, {} layers a plane", best->value("structure", ""),
                                               best->value("layersPerPlane", 0))
                                 : "not measured";
-    return figure(name, volume, numberAt(best, "/speedup"), goal, Goal::AtLeast,
-                  "times as fast, each at its best ratio; " + by);
+    return figure(std::move(key), std::move(name), volume, numberAt(best, "/speedup"), goal,
+                  Goal::AtLeast, "times as fast, each at its best ratio; " + by);
 }
 
 void addHybrid(json& figures, const json& rows, const json& volume) {
@@ -179,6 +190,7 @@ void addHybrid(json& figures, const json& rows, const json& volume) {
             // Rectangles are the structure's too, and what is drawn unless told otherwise.
             figures.push_back(hybridFigure(
                 skipping, volume,
+                fmt::format("hybrid_{}_{}_speedup", keyOf(mode), tighten ? "rectangles" : "sphere"),
                 fmt::format("hybrid against its own best without, {}, {}", mode, planes),
                 goalIf(tighten && isBone(volume), 2.0)));
         }
@@ -195,29 +207,31 @@ void addMerging(json& figures, const json& rows, const json& volume) {
             speedups.push_back(row->at("speedup").get<double>());
         }
         const FrameTimes all = summarise(speedups); // no times, but a median all the same
-        figures.push_back(
-            figure(fmt::format("merging 16 partitions against rebuilding, blocks of {}", edge),
-                   volume, speedups.empty() ? std::nullopt : Value(all.median),
-                   goalIf(edge == 4, 10.0), Goal::AtLeast,
-                   fmt::format("times as fast, median of {} transfer functions ({:.3g} to {:.3g})",
-                               speedups.size(), all.min, all.max)));
+        const bool any = !speedups.empty();
+        figures.push_back(figure(
+            fmt::format("merge_16_speedup_edge_{}", edge),
+            fmt::format("merging 16 partitions against rebuilding, blocks of {}", edge), volume,
+            any ? Value(all.median) : std::nullopt, goalIf(edge == 4, 10.0), Goal::AtLeast,
+            any ? fmt::format("times as fast, median of {} transfer functions ({:.3g} to {:.3g})",
+                              speedups.size(), all.min, all.max)
+                : "not measured: over the memory budget"));
     }
 }
 
 void addBuilds(json& figures, const json& rows, const json& volume) {
-    const json* row = rowWith(rows, {{"table", "sizes"},
-                                     {"volume", volume["name"]},
-                                     {"edge", 256},
-                                     {"structure", "bitfield-octree"}});
-    if (row == nullptr) {
-        return; // not of the sizes that were asked for
+    const json sized = {{"table", "sizes"}, {"volume", volume["name"]}};
+    if (rowWith(rows, sized) == nullptr) {
+        return; // another volume was resampled
     }
+    json octree = sized;
+    octree.update({{"edge", 256}, {"structure", "bitfield-octree"}});
+    const json* row = rowWith(rows, octree); // none where 256 is not among the sizes
     constexpr double kVoxels = 256.0 * 256.0 * 256.0;
-    figures.push_back(figure("bitfield octree of 256^3, build", volume,
-                             numberAt(row, "/buildMs/median"), 60.0, Goal::AtMost,
+    figures.push_back(figure("bitfield_octree_256_build_ms", "bitfield octree of 256^3, build",
+                             volume, numberAt(row, "/buildMs/median"), 60.0, Goal::AtMost,
                              "ms on the processor; leaves of 4 voxels, 32 bits"));
-    figures.push_back(figure("bitfield octree of 256^3, memory", volume,
-                             quotient(numberAt(row, "/gpuBytes"), 2.0 * kVoxels), 0.05,
+    figures.push_back(figure("bitfield_octree_256_memory_share", "bitfield octree of 256^3, memory",
+                             volume, quotient(numberAt(row, "/gpuBytes"), 2.0 * kVoxels), 0.05,
                              Goal::AtMost, "of a 16-bit volume's"));
 }
 
@@ -235,26 +249,34 @@ json figuresOf(const json& volumes, const json& rows) {
     return figures;
 }
 
-std::string summaryOf(const json& figures) {
-    std::vector<std::string> missed;
+json summaryOf(const json& figures) {
+    json volumes = json::object();
     int reached = 0;
     int judged = 0;
     for (const json& figure : figures) {
-        if (figure["reached"].is_null()) {
-            continue;
-        }
-        ++judged;
-        if (figure["reached"].get<bool>()) {
-            ++reached;
-        } else {
-            missed.push_back(fmt::format(
-                "{} ({}): {:.3g} {} {:g} does not hold", figure["name"].get<std::string>(),
+        judged += !figure["reached"].is_null();
+        reached += figure["reached"] == true;
+        volumes[figure["volume"].get<std::string>()][figure["key"].get<std::string>()] = {
+            {"value", figure["value"]},
+            {"goal", figure["goal"]},
+            {"sense", figure["sense"]},
+            {"reached", figure["reached"]}};
+    }
+    return {{"judged", judged}, {"reached", reached}, {"volumes", std::move(volumes)}};
+}
+
+std::string lineOf(const json& summary, const json& figures) {
+    std::string missed;
+    for (const json& figure : figures) {
+        if (figure["reached"] == false) {
+            missed += fmt::format(
+                "; {} ({}): {:.3g} {} {:g} does not hold", figure["name"].get<std::string>(),
                 figure["volume"].get<std::string>(), figure["value"].get<double>(),
-                figure["sense"].get<std::string>(), figure["goal"].get<double>()));
+                figure["sense"].get<std::string>(), figure["goal"].get<double>());
         }
     }
-    return fmt::format("summary: {} of {} figures reached{}{}", reached, judged,
-                       missed.empty() ? "" : "; ", fmt::join(missed, "; "));
+    return fmt::format("summary: {} of {} figures reached{}", summary["reached"].get<int>(),
+                       summary["judged"].get<int>(), missed);
 }
 
 } // namespace slabcast

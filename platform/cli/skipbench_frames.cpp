@@ -39,40 +39,36 @@ std::vector<Seat> seatsOf(std::span<const Subject> subjects, bool onlyRectangles
     return seats;
 }
 
-json rowOf(const SkipBench& bench, const char* table, const char* family, const BenchMode& mode,
-           const Subject& subject) {
+json rowOf(const SkipBench& bench, const char* table, const char* family, const BenchMode& mode) {
     json row = bench.row(table);
-    row.update(toJson(subject.options));
     row.update({{"family", family}, {"mode", mode.name}});
     return row;
 }
 
-Result<void> raceOf(SkipBench& bench, const std::vector<Entrant>& entrants) {
-    const Result<json> rows = race(bench.stage, entrants, bench.options.frames,
-                                   bench.options.quick ? kQuickRaceMs : kRaceMs);
-    if (!rows) {
-        return tl::unexpected(rows.error());
-    }
-    bench.rows.insert(bench.rows.end(), rows->begin(), rows->end());
-    return {};
+double raceMs(const SkipBench& bench) {
+    return bench.options.quick ? kQuickRaceMs : kRaceMs;
 }
 
-Result<void> castRays(SkipBench& bench, std::span<const Subject> subjects) {
+void add(SkipBench& bench, const json& rows) {
+    bench.rows.insert(bench.rows.end(), rows.begin(), rows.end());
+}
+
+Result<Entrant> ofRays(const SkipBench& bench, const Subject& subject, const BenchMode& mode,
+                       json row) {
+    row.update(toJson(subject.options));
+    return entrantOf(bench.stage, subject.scene, rayCasting(bench.options, mode), std::move(row));
+}
+
+Result<void> castRays(SkipBench& bench, const BestSubjects& subjects) {
     for (const BenchMode& mode : {kMarchingOnly, kEarlyExit, kShading}) {
         bench.progress.show(fmt::format("{}: ray casting, {}", bench.volume, mode.name));
-        std::vector<Entrant> entrants;
-        for (const Subject& subject : subjects) {
-            Result<Entrant> entrant =
-                entrantOf(bench.stage, subject.scene, rayCasting(bench.options, mode),
-                          rowOf(bench, "frames", "ray casting", mode, subject));
-            if (!entrant) {
-                return tl::unexpected(entrant.error());
-            }
-            entrants.push_back(std::move(*entrant));
+        const Result<json> rows =
+            raceRays(bench, subjects.of(mode), mode, rowOf(bench, "frames", "ray casting", mode),
+                     bench.options.frames, raceMs(bench));
+        if (!rows) {
+            return tl::unexpected(rows.error());
         }
-        if (Result<void> done = raceOf(bench, entrants); !done) {
-            return done;
-        }
+        add(bench, *rows);
     }
     return {};
 }
@@ -82,22 +78,32 @@ Result<Entrant> seated(const SkipBench& bench, const Seat& seat, int layers, con
     Settings settings = settingsOf(bench.options, mode);
     settings.layersPerPlane = layers;
     settings.tighten = seat.tighten;
-    return entrantOf(bench.stage, seat.subject->scene, settings,
-                     rowOf(bench, table, family, mode, *seat.subject));
+    json row = rowOf(bench, table, family, mode);
+    row.update(toJson(seat.subject->options));
+    return entrantOf(bench.stage, seat.subject->scene, settings, std::move(row));
+}
+
+/// A race of all seats, each with the layers per plane that `layersOf` gives it.
+template <class LayersOf>
+Result<void> raceSeats(SkipBench& bench, const std::vector<Seat>& seats, const BenchMode& mode,
+                       const char* family, LayersOf layersOf) {
+    return entrantsOf(seats,
+                      [&](const Seat& seat) {
+                          return layersOf(seat).and_then([&](int layers) {
+                              return seated(bench, seat, layers, mode, "frames", family);
+                          });
+                      })
+        .and_then([&](const std::vector<Entrant>& entrants) {
+            return race(bench.stage, entrants, bench.options.frames, raceMs(bench));
+        })
+        .map([&](const json& rows) { add(bench, rows); });
 }
 
 Result<void> slice(SkipBench& bench, std::span<const Subject> subjects) {
     bench.progress.show(bench.volume + ": slicing");
-    std::vector<Entrant> entrants;
     // A quick run leaves out what never pays: a fetch per layer to save no more than a layer.
-    for (const Seat& seat : seatsOf(subjects, bench.options.quick)) {
-        Result<Entrant> entrant = seated(bench, seat, 1, kMarchingOnly, "frames", "slicing");
-        if (!entrant) {
-            return tl::unexpected(entrant.error());
-        }
-        entrants.push_back(std::move(*entrant));
-    }
-    return raceOf(bench, entrants);
+    return raceSeats(bench, seatsOf(subjects, bench.options.quick), kMarchingOnly, "slicing",
+                     [](const Seat&) -> Result<int> { return 1; });
 }
 
 /// Layers per plane that are fastest on the picture as it is, by the least of a few frames.
@@ -128,23 +134,19 @@ Result<int> bestLayers(SkipBench& bench, const Seat& seat, const BenchMode& mode
     return best;
 }
 
-Result<void> castSegments(SkipBench& bench, std::span<const Subject> subjects) {
+Result<void> castSegments(SkipBench& bench, const BestSubjects& subjects) {
     for (const BenchMode& mode : {kMarchingOnly, kEarlyExit}) {
-        std::vector<Entrant> entrants;
-        for (const Seat& seat : seatsOf(subjects)) {
+        const auto searched = [&](const Seat& seat) {
             bench.progress.show(fmt::format("{}: hybrid, {}, {}", bench.volume, mode.name,
                                             name(seat.subject->options.structure)));
             bench.stage.resize(smaller(bench.options.size));
-            const Result<int> layers = bestLayers(bench, seat, mode);
+            Result<int> layers = bestLayers(bench, seat, mode);
             bench.stage.resize(bench.options.size);
-            Result<Entrant> entrant = layers.and_then(
-                [&](int best) { return seated(bench, seat, best, mode, "frames", "hybrid"); });
-            if (!entrant) {
-                return tl::unexpected(entrant.error());
-            }
-            entrants.push_back(std::move(*entrant));
-        }
-        if (Result<void> done = raceOf(bench, entrants); !done) {
+            return layers;
+        };
+        if (Result<void> done =
+                raceSeats(bench, seatsOf(subjects.of(mode)), mode, "hybrid", searched);
+            !done) {
             return done;
         }
     }
@@ -160,9 +162,8 @@ Result<void> countWork(SkipBench& bench) {
         return tl::unexpected(subjects.error());
     }
     for (const Subject& subject : *subjects) {
-        Result<Entrant> entrant =
-            entrantOf(bench.stage, subject.scene, rayCasting(bench.options, kMarchingOnly),
-                      rowOf(bench, "work", "ray casting", kMarchingOnly, subject));
+        Result<Entrant> entrant = ofRays(bench, subject, kMarchingOnly,
+                                         rowOf(bench, "work", "ray casting", kMarchingOnly));
         if (!entrant) {
             return tl::unexpected(entrant.error());
         }
@@ -198,10 +199,19 @@ Settings rayCasting(const SkipbenchOptions& options, const BenchMode& mode) {
     return settings;
 }
 
-Result<void> measureFrames(SkipBench& bench, std::span<const Subject> subjects) {
+Result<json> raceRays(SkipBench& bench, std::span<const Subject> subjects, const BenchMode& mode,
+                      const json& row, int rounds, double budgetMs) {
+    return entrantsOf(subjects,
+                      [&](const Subject& subject) { return ofRays(bench, subject, mode, row); })
+        .and_then([&](const std::vector<Entrant>& entrants) {
+            return race(bench.stage, entrants, rounds, budgetMs);
+        });
+}
+
+Result<void> measureFrames(SkipBench& bench, const BestSubjects& subjects) {
     return castRays(bench, subjects)
         .and_then([&] { return castSegments(bench, subjects); })
-        .and_then([&] { return slice(bench, subjects); })
+        .and_then([&] { return slice(bench, subjects.of(kMarchingOnly)); })
         .and_then([&] { return countWork(bench); });
 }
 

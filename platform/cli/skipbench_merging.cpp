@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <optional>
 
 #include <fmt/core.h>
 
+#include "core/base/stopwatch.h"
 #include "core/skip/chebyshev.h"
 #include "core/skip/occupancy.h"
 #include "core/skip/proximity_cloud.h"
@@ -17,7 +17,6 @@ namespace slabcast {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 
 constexpr std::array kEdges{4, 2, 1};
@@ -105,9 +104,9 @@ SkipOptions optionsOf(const SkipBench& bench, SkipStructure structure, int edge,
 }
 
 double msOf(const BuildStages& stages) {
-    const auto start = Clock::now();
+    const Stopwatch watch;
     (void)runStages(stages); // not cancelled: cannot fail
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    return watch.ms();
 }
 
 /// Builds partitioned maps and tells what they take.

@@ -19,6 +19,20 @@ struct Entrant {
 Result<Entrant> entrantOf(const Stage& stage, const Scene& scene, const Settings& settings,
                           nlohmann::json row);
 
+/// One of each item, as `enter` makes it.
+template <class Items, class Enter>
+Result<std::vector<Entrant>> entrantsOf(const Items& items, Enter enter) {
+    std::vector<Entrant> entrants;
+    for (const auto& item : items) {
+        Result<Entrant> entrant = enter(item);
+        if (!entrant) {
+            return tl::unexpected(entrant.error());
+        }
+        entrants.push_back(std::move(*entrant));
+    }
+    return entrants;
+}
+
 /// The least of a few frames, after one that is not counted: what disturbs a frame only ever makes
 /// it longer. For choices among many, before a race decides between few.
 Result<double> leastMs(Stage& stage, const Entrant& entrant);

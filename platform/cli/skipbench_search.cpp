@@ -4,7 +4,6 @@
 
 #include <fmt/core.h>
 
-#include "platform/cli/skipbench_frames.h"
 #include "platform/cli/skipbench_race.h"
 
 namespace slabcast {
@@ -51,63 +50,61 @@ Result<std::vector<Tried>> triedOf(SkipBench& bench, SkipStructure structure) {
     return tried;
 }
 
-/// The fastest of the finalists, racing at full size.
-Result<SkipOptions> winnerOf(SkipBench& bench, const std::vector<Tried>& finalists) {
+/// The fastest of the finalists, racing at full size; none, which they are measured by, races too.
+Result<SkipOptions> winnerOf(SkipBench& bench, const std::vector<Tried>& finalists,
+                             const BenchMode& mode) {
     if (finalists.size() == 1) {
         return finalists.front().options;
     }
-    std::vector<SkipOptions> structures;
+    std::vector<SkipOptions> structures{{.structure = SkipStructure::None}};
     for (const Tried& tried : finalists) {
         structures.push_back(tried.options);
     }
+    json row = bench.row("finals");
+    row.update({{"finalsOf", name(finalists.front().options.structure)}, {"mode", mode.name}});
     std::vector<Refusal> refused; // none: they were built before
-    const Result<std::vector<Subject>> subjects = subjectsOf(bench.stage, structures, refused);
-    if (!subjects) {
-        return tl::unexpected(subjects.error());
-    }
-    std::vector<Entrant> entrants;
-    for (const Subject& subject : *subjects) {
-        json row = bench.row("finals");
-        row.update(toJson(subject.options));
-        Result<Entrant> entrant =
-            entrantOf(bench.stage, subject.scene, rayCasting(bench.options, kMarchingOnly), row);
-        if (!entrant) {
-            return tl::unexpected(entrant.error());
-        }
-        entrants.push_back(std::move(*entrant));
-    }
-    const Result<json> rows = race(bench.stage, entrants, bench.options.frames, kFinalsMs);
+    const Result<json> rows =
+        subjectsOf(bench.stage, structures, refused)
+            .and_then([&](const std::vector<Subject>& subjects) {
+                return raceRays(bench, subjects, mode, row, bench.options.frames, kFinalsMs);
+            });
     if (!rows) {
         return tl::unexpected(rows.error());
     }
+    bench.rows.insert(bench.rows.end(), rows->begin(), rows->end());
     const auto best =
-        std::max_element(rows->begin(), rows->end(), [](const json& a, const json& b) {
+        std::max_element(rows->begin() + 1, rows->end(), [](const json& a, const json& b) {
             return a["speedup"].get<double>() < b["speedup"].get<double>();
         });
-    bench.rows.insert(bench.rows.end(), rows->begin(), rows->end());
     return structures[static_cast<std::size_t>(best - rows->begin())];
 }
 
 } // namespace
 
-Result<std::vector<SkipOptions>> searchParameters(SkipBench& bench) {
-    std::vector<SkipOptions> best;
+Result<BestParameters> searchParameters(SkipBench& bench) {
+    BestParameters best;
     for (const SkipOptions& usual : usualStructures(bench.options)) {
         if (usual.structure == SkipStructure::None ||
             usual.structure == SkipStructure::Partitioned) {
-            best.push_back(usual);
+            best.marching.push_back(usual);
+            best.terminating.push_back(usual);
             continue;
         }
         const glm::ivec2 size = bench.options.size;
         bench.stage.resize(smaller(size));
-        const Result<std::vector<Tried>> tried = triedOf(bench, usual.structure);
+        const Result<std::vector<Tried>> finalists = triedOf(bench, usual.structure);
         bench.stage.resize(size);
-        const Result<SkipOptions> winner =
-            tried.and_then([&](const std::vector<Tried>& few) { return winnerOf(bench, few); });
-        if (!winner) {
-            return tl::unexpected(winner.error());
+        if (!finalists) {
+            return tl::unexpected(finalists.error());
         }
-        best.push_back(*winner);
+        for (const auto& [winners, mode] :
+             {std::pair{&best.marching, kMarchingOnly}, std::pair{&best.terminating, kEarlyExit}}) {
+            const Result<SkipOptions> winner = winnerOf(bench, *finalists, mode);
+            if (!winner) {
+                return tl::unexpected(winner.error());
+            }
+            winners->push_back(*winner);
+        }
     }
     return best;
 }

@@ -4,7 +4,6 @@
 
 #include "platform/cli/skipbench_builds.h"
 #include "platform/cli/skipbench_frames.h"
-#include "platform/cli/skipbench_race.h"
 
 namespace slabcast {
 
@@ -14,28 +13,6 @@ using nlohmann::json;
 
 constexpr int kBuilds = 3;
 constexpr double kRaceMs = 20e3;
-
-/// Frames of all that can be had, by structure.
-Result<json> framesOf(SkipBench& bench, const json& beginning) {
-    std::vector<Refusal> refused; // named with the builds
-    const Result<std::vector<Subject>> subjects =
-        subjectsOf(bench.stage, usualStructures(bench.options), refused);
-    if (!subjects) {
-        return tl::unexpected(subjects.error());
-    }
-    std::vector<Entrant> entrants;
-    for (const Subject& subject : *subjects) {
-        json row = beginning;
-        row.update(toJson(subject.options));
-        Result<Entrant> entrant =
-            entrantOf(bench.stage, subject.scene, rayCasting(bench.options, kMarchingOnly), row);
-        if (!entrant) {
-            return tl::unexpected(entrant.error());
-        }
-        entrants.push_back(std::move(*entrant));
-    }
-    return race(bench.stage, entrants, kFewestFrames, kRaceMs);
-}
 
 /// Rows of frames, each with what the row of the same structure's builds says too; refused ones
 /// have no frames.
@@ -61,20 +38,24 @@ Result<json> measureSize(SkipBench& bench, int edge) {
                       {"volumeBytes", bench.stage.info().bytes},
                       {"mode", kMarchingOnly.name},
                       {"family", "ray casting"}});
+    const std::vector<SkipOptions> structures = usualStructures(bench.options);
     json builds;
     {
         const Workshop workshop(bench.stage);
         beginning["codesMs"] = workshop.codesMs();
-        Result<json> built = buildRows(workshop, bench.stage.scene(),
-                                       usualStructures(bench.options), kBuilds, beginning);
+        Result<json> built = buildRows(workshop, workshop.visibilityUnder(bench.stage.scene()),
+                                       structures, kBuilds, beginning);
         if (!built) {
             return tl::unexpected(built.error());
         }
         builds = std::move(*built);
     }
-    return framesOf(bench, beginning).map([&](json frames) {
-        return joined(std::move(frames), builds);
-    });
+    std::vector<Refusal> refused; // named with the builds
+    return subjectsOf(bench.stage, structures, refused)
+        .and_then([&](const std::vector<Subject>& subjects) {
+            return raceRays(bench, subjects, kMarchingOnly, beginning, kFewestFrames, kRaceMs);
+        })
+        .map([&](json frames) { return joined(std::move(frames), builds); });
 }
 
 } // namespace
