@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "platform/cli/skip_options.h"
+
 namespace slabcast {
 
 namespace {
@@ -52,8 +54,8 @@ std::string renderCommandLine(const SceneOptions& scene, const Sampling& samplin
     const SceneOptions usual;
     const InputOptions& input = scene.input;
     const auto number = [](double value) { return fmt::format("{}", value); };
-    return CommandLine("slabcast render " + shellWord(input.volume))
-        .add("-o", output)
+    CommandLine line("slabcast render " + shellWord(input.volume));
+    line.add("-o", output)
         .addIf(!input.series.empty(), "--series", input.series)
         .addIf(!input.raw.empty(), "--raw", input.raw)
         .addIf(input.downsample != 1, "--downsample", fmt::format("{}", input.downsample))
@@ -73,10 +75,13 @@ std::string renderCommandLine(const SceneOptions& scene, const Sampling& samplin
         .add("--order", name(plan.order))
         .add("--form", plan.variant.unroll > 0 ? "unrolled" : "loop")
         .add("--skip", name(plan.skip))
-        .addIf(scene.skip.blockEdgeVoxels != usual.skip.blockEdgeVoxels, "--skip-block",
-               fmt::format("{}", scene.skip.blockEdgeVoxels))
-        .addIf(!plan.tighten, "--tighten", "off")
-        .text();
+        .addIf(!plan.tighten, "--tighten", "off");
+    for (const SkipParameter& parameter : skipParameters()) {
+        const nlohmann::json value = parameter.value(scene.skip);
+        line.addIf(parameter.isOf(plan.skip) && value != parameter.value(usual.skip),
+                   parameter.flag, wordOf(value));
+    }
+    return line.text();
 }
 
 } // namespace slabcast

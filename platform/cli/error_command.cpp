@@ -152,7 +152,7 @@ void refreshTable(const Stage& stage, const ErrorOptions& o, const std::vector<S
     if (!isUsual(o)) {
         fmt::print(stderr,
                    "slabcast: the table for --target-error is left as it was: it holds what "
-                   "was measured without --skip, --skip-block, --tighten, --lattice, "
+                   "was measured without --skip, its parameters, --tighten, --lattice, "
                    "--form and --exact\n");
         return;
     }

@@ -9,6 +9,7 @@
 #include "platform/cli/picture_file.h"
 #include "platform/cli/progress.h"
 #include "platform/cli/reference_pictures.h"
+#include "platform/cli/skip_options.h"
 #include "platform/io/atomic_file.h"
 
 namespace slabcast {
@@ -22,6 +23,9 @@ void explain(const FramePlan& plan, const VolumeInfo& info, const Scene& scene) 
     fmt::print("memory: {:.1f} MiB for the texels on the GPU, {:.1f} MiB on the host\n",
                static_cast<double>(info.forecast.gpuTexelBytes) / kMib,
                static_cast<double>(info.forecast.hostBytes()) / kMib);
+    if (scene.skip().exists()) {
+        fmt::print("skip structure: {}\n", describe(scene.skip()));
+    }
     for (const Reason& reason : plan.reasons) {
         fmt::print("{}: {}\n", reason.what, reason.why);
     }
@@ -133,12 +137,23 @@ Result<CostPicture> drawCosts(Stage& stage, const FramePlan& plan, const RenderO
     return picture;
 }
 
+/// What was built to skip by, and what of it the plan has a use for.
+nlohmann::json skipStats(const BuiltSkip& skip, const FramePlan& plan) {
+    nlohmann::json stats = toJson(skip);
+    if (!stats.is_null()) {
+        stats["skips"] = plan.skip != SkipStructure::None;
+        stats["tightens"] = plan.tighten;
+    }
+    return stats;
+}
+
 nlohmann::json stats(Stage& stage, const FramePlan& plan, const std::vector<double>& times) {
     const GpuMemory gpu = stage.renderer().gpuMemory();
     return {{"device", toJson(stage.session().caps)},
             {"commit", commit()},
             {"volume", toJson(stage.info())},
             {"plan", toJson(plan)},
+            {"skip", skipStats(stage.scene().skip(), plan)},
             {"frame_ms", toJson(summarise(times))},
             {"counters", toJson(stage.countWork(plan))},
             {"compile_ms", stage.renderer().compileMs(plan.variant)},

@@ -59,34 +59,6 @@ std::optional<std::optional<glm::dvec3>> parseBackground(const std::string& word
     return glm::dvec3(rgb >> 16 & 255U, rgb >> 8 & 255U, rgb & 255U) / 255.0;
 }
 
-/// Nothing where it cannot be read.
-std::optional<std::optional<std::array<double, 2>>> parseValueRange(const std::string& word) {
-    const auto parts = split(word, ',');
-    const auto low = parts.size() == 2 ? parseReal(parts[0]) : std::nullopt;
-    const auto high = parts.size() == 2 ? parseReal(parts[1]) : std::nullopt;
-    if (!low || !high || !std::isfinite(*low) || !std::isfinite(*high) || !(*low < *high)) {
-        return std::nullopt;
-    }
-    return std::optional<std::array<double, 2>>({*low, *high});
-}
-
-Choices<int> numbers(std::initializer_list<int> values) {
-    Choices<int> words;
-    for (const int value : values) {
-        words.emplace_back(std::to_string(value), value);
-    }
-    return words;
-}
-
-/// auto, and every structure by its name.
-Choices<std::optional<SkipStructure>> skipWords() {
-    Choices<std::optional<SkipStructure>> words{{"auto", std::nullopt}};
-    for (const SkipStructureInfo& info : skipStructures()) {
-        words.emplace_back(info.name, info.structure);
-    }
-    return words;
-}
-
 std::string phantomNames() {
     std::vector<std::string> names;
     for (const PhantomInfo& phantom : phantomList()) {
@@ -202,12 +174,15 @@ void bindEyes(CLI::App& command, SceneOptions& o) {
         ->type_name("IPD_MM")
         ->default_str("off")
         ->group(group);
+}
+
+void bindBackground(CLI::App& command, SceneOptions& o) {
     addParsed<std::optional<glm::dvec3>>(
         command, "--background", o.background, parseBackground, "RRGGBB in hexadecimal, or none",
         "what is behind the volume, or none for a transparent picture")
         ->type_name("RRGGBB|none")
         ->default_str("000000")
-        ->group(group);
+        ->group("Picture and camera");
 }
 
 void bindLook(CLI::App& command, SceneOptions& o) {
@@ -248,43 +223,6 @@ void bindStack(CLI::App& command, SceneOptions& o) {
               "planes over each other, or nearest first, which leaves out what is behind opaque "
               "material; auto goes by how soon a ray can be opaque")
         ->group(group);
-    addChoice(command, "--skip", s.skip, skipWords(),
-              fmt::format("how empty space is skipped: {}; never changes the picture; auto goes by "
-                          "what is visible",
-                          wordsOf(skipWords(), ", ")))
-        ->type_name("NAME")
-        ->group(group);
-    addChoice(command, "--skip-block", o.skip.blockEdgeVoxels, numbers({1, 2, 4, 8, 16, 32, 64}),
-              "edge in voxels of the skip structure's blocks, or of an octree's leaves")
-        ->group(group);
-    addChoice(command, "--skip-builder", o.skipBuilder,
-              {{"auto", SkipBuilder::Auto}, {"cpu", SkipBuilder::Cpu}, {"gpu", SkipBuilder::Gpu}},
-              "where it is built, with the same result; auto: on the GPU unless that is software")
-        ->group(group);
-    addChoice(command, "--skip-bits", o.skip.bits, numbers({8, 16, 32, 64, 128}),
-              "bits per node of a bitfield octree")
-        ->group(group);
-    addChoice(command, "--partitions", o.skip.partitions, numbers({16, 32, 64, 128, 256}),
-              "ranges of values that partitioned maps tell apart")
-        ->group(group);
-    addChoice(command, "--separate-minimum", o.skip.separateMinimum, onOffWords(),
-              "whether the least value has a bin or partition of its own")
-        ->group(group);
-    addParsed<std::optional<std::array<double, 2>>>(
-        command, "--value-range", o.skip.valueRange, parseValueRange,
-        "two values, the lower one first",
-        "values between which bins and partitions are laid; all of the data's unless given")
-        ->type_name("LOW,HIGH")
-        ->group(group);
-    addNumber(command, "--initial-level", o.skip.initialLevel, 0, 12,
-              "levels from an octree's root that are left out")
-        ->type_name("0..12")
-        ->group(group);
-    addChoice(
-        command, "--traversal", o.skip.traversal,
-        {{"bidirectional", Traversal::Bidirectional}, {"top-down", Traversal::TopDown}},
-        "whether an octree's tests go on at the level of the last, or begin at the initial one")
-        ->group(group);
     addChoice(command, "--tighten", s.tighten, {{"on", true}, {"off", false}},
               "planes as rectangles around what is visible in their slab, or the sphere's 10-gons")
         ->group(group);
@@ -314,6 +252,24 @@ void bindSampling(CLI::App& command, Settings& s) {
         ->type_name("A|off")
         ->default_str(fmt::format("{:.4f}", s.termination.value_or(1.0)))
         ->group(group);
+}
+
+void bindScene(CLI::App& command, SceneOptions& o) {
+    bindInput(command, o.input);
+    bindTexture(command, o.input);
+    bindCamera(command, o);
+    bindEyes(command, o);
+    bindLook(command, o);
+    bindShading(command, o.settings);
+    bindSampling(command, o.settings);
+    bindStack(command, o);
+}
+
+void bindLayersPerPlane(CLI::App& command, Settings& s, const char* help, const char* usually) {
+    addNumber(command, "--layers-per-plane", s.layersPerPlane, 1, kMaxLayers, help)
+        ->type_name("N")
+        ->default_str(usually)
+        ->group(kLayersGroup);
 }
 
 } // namespace slabcast

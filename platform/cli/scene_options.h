@@ -23,11 +23,20 @@ std::optional<std::optional<double>> parseTermination(const std::string& word);
 void bindInput(CLI::App& command, InputOptions& options);
 void bindTexture(CLI::App& command, InputOptions& options); // how the volume lies on the GPU
 void bindCamera(CLI::App& command, SceneOptions& options);  // and the picture's size
-void bindEyes(CLI::App& command, SceneOptions& options);    // and the background
+void bindEyes(CLI::App& command, SceneOptions& options);
 void bindLook(CLI::App& command, SceneOptions& options);
 void bindShading(CLI::App& command, Settings& settings);
 void bindStack(CLI::App& command, SceneOptions& options);
 /// What a picture's accuracy depends on most, one value each.
 void bindSampling(CLI::App& command, Settings& settings);
+/// All of these.
+void bindScene(CLI::App& command, SceneOptions& options);
+
+/// Where pictures are kept.
+void bindBackground(CLI::App& command, SceneOptions& options);
+
+/// The ratio, where a command takes one.
+void bindLayersPerPlane(CLI::App& command, Settings& settings, const char* help,
+                        const char* usually);
 
 } // namespace slabcast

@@ -1,4 +1,4 @@
-"""Files for cli_test.py, made and read by hand: expectations that owe nothing to the program's own libraries."""
+"""Files for tests of the command line, made and read by hand: expectations that owe nothing to the program's own libraries."""
 
 import gzip
 import struct
