@@ -18,12 +18,13 @@ def volume_sections(bench, entry):
                                     esc(entry.get("transferFunction", "")))))
     compared = {row.structure for row in bench.of("frames", volume=volume, family="ray casting")} - {"none"}
     casting = figure(plots.speedups(bench, volume), bench,
-                     "Each structure with the parameters that suit it best, on equal terms otherwise: one plane, the "
-                     "same camera, layers and target. Bars start at the line, what none takes: to its left is slower. "
+                     "Each structure with the parameters that suit it best (partitioned maps with usual ones), on equal "
+                     "terms otherwise: one plane, the same camera, layers and target. Bars start at the line, what none takes: to its left is slower. "
                      + PAIRED)
     others = figure(plots.families(bench, volume), bench,
                     "Filled: planes as rectangles around what the structure finds visible; hollow: planes of the "
-                    "whole sphere. Hybrid: each at its best ratio, against none at its own best. " + PAIRED)
+                    "whole sphere; none has its rectangles from blocks. Hybrid: each at its best ratio, against none of "
+                    "the whole sphere at its own best. " + PAIRED)
     merges = figure(plots.merging(bench, volume), bench,
                     "Merging partitioned maps against rebuilding the Chebyshev map (black; the median of the transfer "
                     "functions), by block edge. What is not drawn was over the memory budget, or left out of a quick "

@@ -104,7 +104,7 @@ def families(bench, volume):
                 _bar(axes, names.index(row.structure) + (apart if tight else -apart), row.speedup, edgecolor=colour,
                      height=0.34 if apart else 0.66, color=colour if tight else PAPER_WHITE, linewidth=1)
             _name_bars(axes, names)
-        _name_axis(panels, "times as fast as none at its best (log)", narrow)
+        _name_axis(panels, "times as fast as none, planes of the sphere (log)", narrow)
         return svg(figure, _id("families", bench, volume, narrow))
     return draw
 

@@ -173,7 +173,8 @@ def searched(bench, volume):
     return parts and f'<div class="heats">{"".join(parts)}</div>' + note(
         "Ray casting, marching only, on a picture of half the edge: the least of three frames, in ms; in each cell "
         "the best of all that its two parameters leave open. The fastest five of each structure then raced at full "
-        "size, none with them, without early exit and with it, and the winners are what the other tables use. A level is how many levels below the root a walk begins.")
+        "size, none with them, without early exit and with it; the winners are what frames and memory are of. A level "
+        "is how many levels below the root a walk begins.")
 
 
 # Building
@@ -214,8 +215,8 @@ def generation(bench, volume):
     paper = span([data["generation"][0] / data["generation"][3] for data in bench.paper("faludi").get("datasets", [])],
                  lambda value: f"{value:.1f}")
     if all(ours) and paper:
-        told += (f"On the CPU the proximity cloud takes {ours[0] / ours[1]:.1f} times as long as the bitfield octree, "
-                 f"in the paper {paper} times, on its GPU. ")
+        told += (f"On the CPU this proximity cloud takes {ours[0] / ours[1]:.1f} times as long as this bitfield octree, "
+                 f"each with its own parameters; in the paper {paper} times, on its GPU, with blocks of 4 voxels. ")
     return lines and bleeding(table(head, lines, css="rows bench")) + note(
         told + "“Another TF”: what a structure that does not depend on it takes under a new one; the others are "
         "built anew.")

@@ -62,7 +62,7 @@ class Parameters(CliTest):
                               f"{flag}: is of {either(users)}; --skip is {structure};"))
             cases.append((render(flag, word), f"{flag}: is of .*; --skip is auto, which takes proximity;"))
         for flag, word in (("--skip-block", "64"), ("--skip-block", "4"), ("--skip-builder", "cpu")):
-            cases.append((render("--skip", "none", flag, word),
+            cases.append((render("--skip", "none", "--tighten", "off", flag, word),
                           f"{flag}: is of blocks, proximity, .* or bitfield-octree; --skip is none;"))
         cases.append((("sweep", PHANTOM, "--out", "d", "--skip-bits", "64"), "--skip-bits: is of bitfield-octree"))
         cases.append((("error", PHANTOM, "--out", "d", "--skip-bits", "64"), "--skip-bits: is of bitfield-octree"))

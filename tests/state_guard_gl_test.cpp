@@ -262,8 +262,8 @@ TEST_F(StateGuardGl, UnitsBeyondTheRestoredKeepTheirTextures) {
         EXPECT_TRUE(layer.resize(4, 4, {GL_RGBA8}).has_value());
     }
     EXPECT_TRUE(uploadTable({glm::vec4(1.0F)}, false, caps()).has_value());
-    const std::uint8_t byte = 1;
-    EXPECT_TRUE(uploadBytes3d({&byte, 1}, {1, 1, 1}, caps()).has_value());
+    const glm::u8vec4 colour(1);
+    EXPECT_TRUE(uploadClassified(&colour, {1, 1, 1}, caps()).has_value());
     EXPECT_EQ(integer(GL_ACTIVE_TEXTURE), GL_TEXTURE9);
     EXPECT_EQ(integer(GL_TEXTURE_BINDING_2D), static_cast<GLint>(host.plane.id()));
     EXPECT_EQ(integer(GL_TEXTURE_BINDING_3D), static_cast<GLint>(host.volume.id()));

@@ -1,7 +1,6 @@
 #include "core/volume/texel_format.h"
 
 #include <cmath>
-#include <numeric>
 
 #include "core/gl/program.h"
 #include "core/gl/state_guard.h"
@@ -302,13 +301,17 @@ std::vector<glm::vec4> drawRow(int count, const std::string& fragment, GLenum ta
 
 TEST_F(TexelFormatGl, UploadPutsEveryTexelInItsPlaceWhateverThePixelState) {
     // Odd extents, so that rows are not aligned; and pixel state as a host may have left it.
-    const glm::ivec3 dims{5, 3, 2};
-    std::vector<std::uint8_t> bytes(30);
-    std::iota(bytes.begin(), bytes.end(), std::uint8_t{100});
+    Texels texels;
+    texels.format = TexelFormat::R8;
+    texels.dims = {5, 3, 2};
+    texels.data.resize(30);
+    for (std::size_t i = 0; i < texels.data.size(); ++i) {
+        texels.data[i] = std::byte(100 + i);
+    }
     gl::PixelStorei(GL_UNPACK_ROW_LENGTH, 11);
     gl::PixelStorei(GL_UNPACK_SKIP_ROWS, 2);
     gl::PixelStorei(GL_UNPACK_ALIGNMENT, 8);
-    const auto texture = uploadBytes3d(bytes, dims, caps());
+    const auto texture = uploadTexels(texels, caps());
     GLint rowLength = 0;
     gl::GetIntegerv(GL_UNPACK_ROW_LENGTH, &rowLength);
     EXPECT_EQ(rowLength, 11);
@@ -318,8 +321,8 @@ TEST_F(TexelFormatGl, UploadPutsEveryTexelInItsPlaceWhateverThePixelState) {
     ASSERT_TRUE(texture.has_value()) << texture.error().detail;
     const auto pixels = drawRow(
         30,
-        fragmentText("usampler3D", "    result = vec4(texelFetch(data, ivec3(i % 5, (i / 5) % 3, i "
-                                   "/ 15), 0).r);"),
+        fragmentText("sampler3D", "    float byte = texelFetch(data, ivec3(i % 5, (i / 5) % 3, i / "
+                                  "15), 0).r * 255.0;\n    result = vec4(round(byte));"),
         GL_TEXTURE_3D, texture->id());
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         EXPECT_EQ(pixels[i].r, static_cast<float>(100 + i)) << i;
@@ -387,8 +390,8 @@ TEST_F(TexelFormatGl, TableKeepsHalfFloatsAndIsNotFiltered) {
 TEST_F(TexelFormatGl, UploadRefusesWhatDoesNotFit) {
     gl::Caps small = caps();
     small.maxTexture3DSize = 16;
-    const std::vector<std::uint8_t> bytes(17);
-    const auto texture = uploadBytes3d(bytes, {17, 1, 1}, small);
+    const std::vector<glm::u8vec4> colours(17);
+    const auto texture = uploadClassified(colours.data(), {17, 1, 1}, small);
     ASSERT_FALSE(texture.has_value());
     EXPECT_EQ(texture.error().code, ErrorCode::VolumeTooLarge);
 

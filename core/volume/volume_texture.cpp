@@ -23,7 +23,6 @@ constexpr Layout kTexelLayouts[] = {
     {GL_R32F, GL_RED, GL_FLOAT, GL_NEAREST, 4},
 };
 constexpr Layout kClassifiedLayout = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_LINEAR, 4};
-constexpr Layout kByteLayout = {GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, GL_NEAREST, 1};
 
 const Layout& layoutOf(TexelFormat format) {
     return kTexelLayouts[static_cast<std::size_t>(format)];
@@ -246,13 +245,6 @@ Result<gl::Texture> uploadTexels(const Texels& texels, const gl::Caps& caps) {
 Result<gl::Texture> uploadClassified(const glm::u8vec4* texels, glm::ivec3 dims,
                                      const gl::Caps& caps) {
     return uploadVoxels("classified texels", kClassifiedLayout, dims, texels, caps);
-}
-
-Result<gl::Texture> uploadBytes3d(std::span<const std::uint8_t> bytes, glm::ivec3 dims,
-                                  const gl::Caps& caps) {
-    const auto needed = textureBytes(dims, kByteLayout.bytesPerTexel);
-    SLABCAST_EXPECTS(!needed || *needed == static_cast<std::int64_t>(bytes.size()), bytes.size());
-    return uploadVoxels("skip data", kByteLayout, dims, bytes.data(), caps);
 }
 
 Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, bool wide,

@@ -89,10 +89,6 @@ Result<gl::Texture> uploadTexels(const Texels& texels, const gl::Caps& caps);
 Result<gl::Texture> uploadClassified(const glm::u8vec4* texels, glm::ivec3 dims,
                                      const gl::Caps& caps);
 
-/// Skip data: R8UI, for texelFetch on a usampler3D.
-Result<gl::Texture> uploadBytes3d(std::span<const std::uint8_t> bytes, glm::ivec3 dims,
-                                  const gl::Caps& caps);
-
 /// A transfer table: RGBA16F, or RGBA32F where `wide`; width x 1, for texelFetch on a sampler2D.
 Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, bool wide,
                                 const gl::Caps& caps);

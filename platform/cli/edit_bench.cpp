@@ -154,6 +154,11 @@ Result<void> EditBench::drawNaive(const EditFrame& frame, double turnDegrees, Ed
         });
     };
     Result<FramePlan> plan = prepared(); // its textures, which the octree's took turns with
+    if (plan) {
+        if (Result<void> warm = draw(renderer, naive_, *plan, turnDegrees); !warm) {
+            return warm;
+        }
+    }
     Stopwatch watch;
     if (frame.newTransfer && plan) {
         Look look = naive_.look();

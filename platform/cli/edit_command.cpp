@@ -87,7 +87,7 @@ json buildsOf(const EditBench& bench) {
     if (live.settled().exists()) {
         builds["settled"] = {{"structure", name(live.settled().options.structure)},
                              {"blockEdge", live.settled().options.blockEdgeVoxels},
-                             {"lastMs", live.rebuildMs()},
+                             {"lastMs", live.rebuildMs() > 0.0 ? json(live.rebuildMs()) : json()},
                              {"gpuBytes", gpuBytes(live.settled())}};
     }
     return builds;

@@ -33,17 +33,21 @@ std::int64_t over(const std::vector<double>& ms, double budgetMs) {
 }
 
 /// From each edit to the first frame that equals one from scratch, that frame counted; of the
-/// edit that took most. null without edits.
+/// edit that took most. null without edits, and where one saw no such frame before the next.
 json framesToCorrect(const std::vector<EditRow>& rows) {
-    std::size_t most = 0;
-    for (std::size_t edit = 0; edit < rows.size(); ++edit) {
-        if (!rows[edit].edited) {
+    std::ptrdiff_t most = 0;
+    for (auto edit = rows.begin(); edit != rows.end(); ++edit) {
+        if (!edit->edited) {
             continue;
         }
+        const auto next =
+            std::find_if(edit + 1, rows.end(), [](const EditRow& row) { return row.edited; });
         const auto correct =
-            std::find_if(rows.begin() + static_cast<std::ptrdiff_t>(edit), rows.end(),
-                         [](const EditRow& row) { return row.equal.value_or(false); });
-        most = std::max(most, static_cast<std::size_t>(correct - rows.begin()) - edit + 1);
+            std::find_if(edit, next, [](const EditRow& row) { return row.equal.value_or(false); });
+        if (correct == next) {
+            return {};
+        }
+        most = std::max(most, correct - edit + 1);
     }
     return most > 0 ? json(most) : json();
 }

@@ -80,9 +80,10 @@ Choices<std::optional<SkipStructure>> skipWords(bool (*isOffered)(SkipStructure)
 /// The structures that a command builds.
 using Serving = std::vector<SkipStructure> (*)(const SceneOptions& options);
 
-/// What --skip names, or what auto may take.
+/// What --skip names, or what auto may take; for none the blocks that tighten planes.
 std::vector<SkipStructure> servingDrawn(const SceneOptions& o) {
-    return {o.settings.skip.value_or(SkipOptions{}.structure)};
+    const SkipStructure asked = o.settings.skip.value_or(SkipOptions{}.structure);
+    return {isBuilt(asked) || !o.settings.tighten ? asked : SkipStructure::Blocks};
 }
 
 /// What serves during edits, and what follows once they have settled.

@@ -40,6 +40,8 @@ struct Builds {
                 return tl::unexpected(built.error());
             }
             refused = built.error().detail;
+            ms.clear();
+            updateMs.clear();
             return {};
         }
         spentMs += built->buildMs;

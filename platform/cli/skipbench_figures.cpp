@@ -169,27 +169,30 @@ void addBlocks(json& figures, const json& rows, const json& volume) {
 /// The best of these rows against none at its best ratio.
 json hybridFigure(const std::vector<const json*>& rows, const json& volume, std::string key,
                   std::string name, std::optional<double> goal) {
-    const json* best = fastest(rows);
+    std::vector<const json*> without, with;
+    for (const json* row : rows) {
+        ((*row)["structure"] == "none" ? without : with).push_back(row);
+    }
+    const json* best = fastest(with);
     const std::string by = best ? fmt::format("{}, {} layers a plane", best->value("structure", ""),
                                               best->value("layersPerPlane", 0))
                                 : "not measured";
-    return figure(std::move(key), std::move(name), volume, numberAt(best, "/speedup"), goal,
-                  Goal::AtLeast, "times as fast, each at its best ratio; " + by);
+    return figure(std::move(key), std::move(name), volume, pairedTimes(fastest(without), best),
+                  goal, Goal::AtLeast, "times as fast, each at its best ratio; " + by);
 }
 
 void addHybrid(json& figures, const json& rows, const json& volume) {
     for (const char* mode : {"early exit", "marching only"}) {
         for (const bool tighten : {true, false}) {
-            std::vector<const json*> skipping = rowsWith(rows, {{"table", "frames"},
-                                                                {"volume", volume["name"]},
-                                                                {"family", "hybrid"},
-                                                                {"mode", mode},
-                                                                {"tighten", tighten}});
-            std::erase_if(skipping, [](const json* row) { return (*row)["structure"] == "none"; });
+            const std::vector<const json*> alike = rowsWith(rows, {{"table", "frames"},
+                                                                   {"volume", volume["name"]},
+                                                                   {"family", "hybrid"},
+                                                                   {"mode", mode},
+                                                                   {"tighten", tighten}});
             const char* planes = tighten ? "planes as rectangles" : "planes of the sphere";
-            // Rectangles are the structure's too, and what is drawn unless told otherwise.
+            // Rectangles are what is drawn unless told otherwise.
             figures.push_back(hybridFigure(
-                skipping, volume,
+                alike, volume,
                 fmt::format("hybrid_{}_{}_speedup", keyOf(mode), tighten ? "rectangles" : "sphere"),
                 fmt::format("hybrid against its own best without, {}, {}", mode, planes),
                 goalIf(tighten && isBone(volume), 2.0)));
@@ -227,9 +230,12 @@ void addBuilds(json& figures, const json& rows, const json& volume) {
     octree.update({{"edge", 256}, {"structure", "bitfield-octree"}});
     const json* row = rowWith(rows, octree); // none where 256 is not among the sizes
     constexpr double kVoxels = 256.0 * 256.0 * 256.0;
-    figures.push_back(figure("bitfield_octree_256_build_ms", "bitfield octree of 256^3, build",
-                             volume, numberAt(row, "/buildMs/median"), 60.0, Goal::AtMost,
-                             "ms on the processor; leaves of 4 voxels, 32 bits"));
+    figures.push_back(
+        figure("bitfield_octree_256_build_ms", "bitfield octree of 256^3, build", volume,
+               numberAt(row, "/buildMs/median"), 60.0, Goal::AtMost,
+               fmt::format("ms on the processor, from codes that took {:.3g} ms; leaves of "
+                           "4 voxels, 32 bits",
+                           numberAt(row, "/codesMs").value_or(0.0))));
     figures.push_back(figure("bitfield_octree_256_memory_share", "bitfield octree of 256^3, memory",
                              volume, quotient(numberAt(row, "/gpuBytes"), 2.0 * kVoxels), 0.05,
                              Goal::AtMost, "of a 16-bit volume's"));

@@ -16,24 +16,30 @@ using nlohmann::json;
 
 constexpr double kRaceMs = 30e3;
 constexpr double kQuickRaceMs = 6e3;
+const SkipOptions kNone{.structure = SkipStructure::None};
 constexpr int kHybridLayers[] = {8, 16, 32, 64};
 
 /// A subject with planes of the one kind or the other.
 struct Seat {
     const Subject* subject;
     bool tighten;
+    bool skips = true; // else the structure makes rectangles of planes and does no more
 };
 
-/// Rectangles come from a structure: none has the sphere's planes only.
+/// The first is none with planes of the sphere, which the race's speed-ups are against. Rectangles
+/// come from a structure: none has them from blocks, as it is drawn unless told otherwise.
 std::vector<Seat> seatsOf(std::span<const Subject> subjects, bool onlyRectangles = false) {
     std::vector<Seat> seats;
     for (const Subject& subject : subjects) {
-        const bool none = subject.options.structure == SkipStructure::None;
-        if (none || !onlyRectangles) {
+        const SkipStructure structure = subject.options.structure;
+        if (structure == SkipStructure::None || !onlyRectangles) {
             seats.push_back({&subject, false});
         }
-        if (!none) {
+        if (structure != SkipStructure::None) {
             seats.push_back({&subject, true});
+        }
+        if (structure == SkipStructure::Blocks) {
+            seats.push_back({&subject, true, false});
         }
     }
     return seats;
@@ -79,7 +85,10 @@ Result<Entrant> seated(const SkipBench& bench, const Seat& seat, int layers, con
     settings.layersPerPlane = layers;
     settings.tighten = seat.tighten;
     json row = rowOf(bench, table, family, mode);
-    row.update(toJson(seat.subject->options));
+    row.update(toJson(seat.skips ? seat.subject->options : kNone));
+    if (!seat.skips) {
+        settings.skip = SkipStructure::None;
+    }
     return entrantOf(bench.stage, seat.subject->scene, settings, std::move(row));
 }
 
@@ -137,8 +146,9 @@ Result<int> bestLayers(SkipBench& bench, const Seat& seat, const BenchMode& mode
 Result<void> castSegments(SkipBench& bench, const BestSubjects& subjects) {
     for (const BenchMode& mode : {kMarchingOnly, kEarlyExit}) {
         const auto searched = [&](const Seat& seat) {
-            bench.progress.show(fmt::format("{}: hybrid, {}, {}", bench.volume, mode.name,
-                                            name(seat.subject->options.structure)));
+            bench.progress.show(fmt::format(
+                "{}: hybrid, {}, {}", bench.volume, mode.name,
+                name(seat.skips ? seat.subject->options.structure : SkipStructure::None)));
             bench.stage.resize(smaller(bench.options.size));
             Result<int> layers = bestLayers(bench, seat, mode);
             bench.stage.resize(bench.options.size);

@@ -27,8 +27,8 @@ struct ByMode {
 using BestParameters = ByMode<std::vector<SkipOptions>>;
 using BestSubjects = ByMode<std::vector<Subject>>;
 
-/// The same lattice, target and classification for all that is compared; planes are those of the
-/// whole sphere, so that structures differ in nothing but what they skip.
+/// The same lattice, target and classification for all that is compared; planes of the whole
+/// sphere, unless changed, so that structures differ in nothing but what they skip.
 Settings settingsOf(const SkipbenchOptions& options, const BenchMode& mode);
 Settings rayCasting(const SkipbenchOptions& options, const BenchMode& mode);
 

@@ -67,7 +67,7 @@ Result<Samples> samplesOf(Stage& stage, const std::vector<Entrant>& entrants, in
 Result<Entrant> entrantOf(const Stage& stage, const Scene& scene, const Settings& settings,
                           json row) {
     Settings own = settings;
-    own.skip = scene.skip().options.structure;
+    own.skip = settings.skip.value_or(scene.skip().options.structure);
     return plan(scene.facts(), own, stage.session().caps, {}).map([&](FramePlan plan) {
         row.update({{"planes", plan.planes},
                     {"layersPerPlane", plan.layersPerPlane},
