@@ -13,20 +13,27 @@ constexpr glm::ivec2 kSmall(48, 36);
 constexpr double kOneItem = 1e-6; // ms: less than any item takes
 constexpr double kNoLimit = 1e9;
 
-/// What the driver was given since: textures of voxels or skipping, words of the latter, programs.
+/// What the driver was given since: textures of voxels or skipping, words of the latter, layers,
+/// programs.
 struct Calls {
-    static inline int volumes = 0, programs = 0;
+    static inline int volumes = 0, layers = 0, programs = 0;
     static inline std::int64_t wordBytes = 0;
+    static inline decltype(gl::TexStorage2D) storage2d = nullptr;
     static inline decltype(gl::TexStorage3D) storage3d = nullptr;
     static inline decltype(gl::TexSubImage3D) subImage3d = nullptr;
     static inline decltype(gl::LinkProgram) link = nullptr;
 
     Calls() {
-        volumes = programs = 0;
+        volumes = layers = programs = 0;
         wordBytes = 0;
+        storage2d = gl::TexStorage2D;
         storage3d = gl::TexStorage3D;
         subImage3d = gl::TexSubImage3D;
         link = gl::LinkProgram;
+        gl::TexStorage2D = [](GLenum target, GLsizei levels, GLenum format, GLsizei w, GLsizei h) {
+            layers += h > 1; // tables are rows
+            storage2d(target, levels, format, w, h);
+        };
         gl::TexStorage3D = [](GLenum target, GLsizei levels, GLenum format, GLsizei w, GLsizei h,
                               GLsizei d) {
             ++volumes;
@@ -44,6 +51,7 @@ struct Calls {
         };
     }
     ~Calls() {
+        gl::TexStorage2D = storage2d;
         gl::TexStorage3D = storage3d;
         gl::TexSubImage3D = subImage3d;
         gl::LinkProgram = link;
@@ -233,7 +241,7 @@ TEST_F(LiveEditingTest, ATransferFunctionThatShowsNothingKeepsTheTextures) {
     EXPECT_EQ(Calls::volumes, 0);
 }
 
-TEST_F(LiveEditingTest, AfterWarmingUpNothingIsCompiled) {
+TEST_F(LiveEditingTest, AfterWarmingUpNothingIsCompiledNorAllocated) {
     Scene scene = makeScene(balls(), {.tf = band(2000.0, 3900.0)},
                             {.structure = SkipStructure::None}); // the map is still to be built
     ASSERT_TRUE(scene.startEditing({.quietFrames = 0}).has_value());
@@ -250,6 +258,7 @@ TEST_F(LiveEditingTest, AfterWarmingUpNothingIsCompiled) {
         EXPECT_TRUE(own->draw(scene, plan, {&where, 1}).has_value());
         return plan;
     };
+    ASSERT_TRUE(own->prepare(scene, planOf(scene)).has_value());
     const Calls calls;
     std::vector<std::string> variants;
     double low = 1000.0; // ever more is shown: no map serves before it is rebuilt
@@ -260,6 +269,8 @@ TEST_F(LiveEditingTest, AfterWarmingUpNothingIsCompiled) {
         variants.push_back(name(frame().variant));
     }
     EXPECT_EQ(Calls::programs, 0);
+    EXPECT_EQ(Calls::volumes, 0);
+    EXPECT_EQ(Calls::layers, 0);
     std::sort(variants.begin(), variants.end());
     const auto different = std::unique(variants.begin(), variants.end()) - variants.begin();
     EXPECT_GE(different, 4) << "both structures, with and without termination";

@@ -369,7 +369,7 @@ TEST_F(LiveSkipTest, RebuildingBeginsWhenTheHandHasComeToRest) {
     }
     EXPECT_EQ(live.work(0.0), LiveProgress::Waiting) << "no budget, no work";
     EXPECT_EQ(live.work(kOneItem), LiveProgress::Building);
-    edit(live, 1, 255);
+    edit(live, 20, 255);
     for (int frame = 0; frame < options.quietFrames; ++frame) {
         EXPECT_EQ(live.work(kAll), LiveProgress::Waiting) << "begun anew";
     }
@@ -413,6 +413,22 @@ TEST_F(LiveSkipTest, AMapOfMoreThanAFramesShareIsUploadedBeforeItServes) {
     EXPECT_EQ(live.work(kAll), LiveProgress::Swapped);
     EXPECT_EQ(live.current().generation, generation);
     EXPECT_FALSE(live.incoming().exists());
+    EXPECT_EQ(*live.current().lengths, freshGrid(scene, options.settled));
+}
+
+TEST_F(LiveSkipTest, OtherColoursLeaveWhatIsInTheMaking) {
+    LiveSkip live = started();
+    edit(live, 0, 255);
+    for (int frame = 0; frame < options.quietFrames; ++frame) {
+        live.work(kAll);
+    }
+    EXPECT_EQ(live.work(kOneItem), LiveProgress::Building);
+    for (glm::vec4& texel : scene.table.texels) {
+        texel.a *= 0.1F;
+    }
+    live.edit(scene.visibility());
+    EXPECT_EQ(live.work(kOneItem), LiveProgress::Building) << "without waiting anew";
+    EXPECT_EQ(live.work(kAll), LiveProgress::Swapped);
     EXPECT_EQ(*live.current().lengths, freshGrid(scene, options.settled));
 }
 

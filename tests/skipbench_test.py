@@ -26,7 +26,7 @@ FIGURES = {"distance_map_marching_only_speedup", "distance_map_early_exit_speedu
            "bitfield_octree_over_distance_map_time", "bitfield_octree_over_minmax_octree_time",
            "bitfield_octree_over_minmax_octree_blocks_visited", "bitfield_octree_over_minmax_octree_blocks_looked_at",
            *(f"hybrid_{mode}_{planes}_speedup" for mode in ("early_exit", "marching_only")
-             for planes in ("rectangles", "sphere")),
+             for planes in ("rectangles", "sphere", "structure")),
            *(f"merge_16_speedup_edge_{edge}" for edge in (4, 2, 1)),
            "bitfield_octree_256_build_ms", "bitfield_octree_256_memory_share"}
 BUDGET_MIB = 0.03  # 27,648 bytes fit (6^3 blocks x 128, 12^3 x 16), 55,296 do not
@@ -201,8 +201,17 @@ class SmallRunTest(unittest.TestCase):
         self.assertAlmostEqual(self.figure("blocks visited")["value"],
                                visited["bitfield-octree"] / visited["minmax-octree"])
         self.assertEqual(self.figure("blocks visited")["goal"], 0.6)
-        hybrid = [row["speedup"] for row in self.of("frames", family="hybrid", mode="early exit", tighten=True)]
-        self.assertAlmostEqual(self.figure("hybrid", "early exit", "rectangles")["value"], max(hybrid))
+        hybrid = {tight: {row["structure"]: row for row in
+                          self.of("frames", family="hybrid", mode="early exit", tighten=tight)}
+                  for tight in (True, False)}
+        for words, with_tight, without_tight in (("both with planes as rectangles", True, True),
+                                                 ("both with planes of the sphere", False, False),
+                                                 ("against none of the sphere", True, False)):
+            self.assertEqual(sorted(hybrid[with_tight]), sorted(STRUCTURES))
+            best = max((row for name, row in hybrid[with_tight].items() if name != "none"),
+                       key=lambda row: row["speedup"])
+            self.assertAlmostEqual(self.figure("hybrid", "early exit", words)["value"],
+                                   paired(hybrid[without_tight]["none"], best))
         merges = [row["speedup"] for row in self.of("merge", blockEdge=4, partitions=16)]
         self.assertAlmostEqual(self.figure("merging 16", "blocks of 4")["value"], statistics.median(merges))
         self.assertIsNone(self.figure("merging 16", "blocks of 1")["value"])  # refused

@@ -6,7 +6,7 @@
 
 #include "core/frame/frame_plan.h"
 #include "core/frame/lattice.h"
-#include "core/skip/skip_texture.h"
+#include "core/skip/skip_layout.h"
 
 namespace slabcast {
 

@@ -127,9 +127,9 @@ struct Planner {
     /// larger nodes where it has many leaves.
     std::string occupancy() const {
         const bool octree = isOctree(facts.skip.structure);
-        return shortNumber(100.0 * facts.occupiedFraction) + " % of the " +
-               std::to_string(facts.skip.blockEdgeVoxels) + "-voxel " +
-               (octree ? "leaves at most" : "blocks") +
+        return (octree ? "at most " : "") + shortNumber(100.0 * facts.occupiedFraction) +
+               " % of the " + std::to_string(facts.skip.blockEdgeVoxels) + "-voxel " +
+               (octree ? "leaves" : "blocks") +
                " hold something visible under this transfer function";
     }
 

@@ -11,6 +11,8 @@ namespace slabcast {
 
 namespace {
 
+/// A grid in the making takes one, and what serves leaves one.
+constexpr std::size_t kMostSpares = 2;
 constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
 /// Uploaded at a time: the driver's copies stay small beside the structure.
 constexpr std::int64_t kStagingBytes = 16 << 20;
@@ -100,7 +102,7 @@ Result<void> GpuScene::updateSkips(const Scene& scene, const FramePlan& plan,
     skips_.erase(firstOld, skips_.end());
     if (!live) { // before the next is allocated: two may not fit
         old.clear();
-        spare_.reset();
+        spares_.clear();
     }
     for (const BuiltSkip* skip : needed) {
         const bool canWait = live && skip == &scene.live()->incoming();
@@ -113,9 +115,10 @@ Result<void> GpuScene::updateSkips(const Scene& scene, const FramePlan& plan,
     }
     for (HeldSkip& one : old) { // not before: the last frame may still be drawn with it
         if (one.blocks.z > 0) {
-            spare_ = std::move(one);
+            spares_.push_back(std::move(one));
         }
     }
+    spares_.erase(spares_.begin(), spares_.end() - std::min(spares_.size(), kMostSpares));
     return {};
 }
 
@@ -128,22 +131,31 @@ Result<void> GpuScene::needOctree(const BuiltSkip& skip, const gl::Caps& caps) {
     });
 }
 
+Result<GpuScene::HeldSkip> GpuScene::emptyGrid(glm::ivec3 blocks, const gl::Caps& caps) {
+    const auto spare = std::find_if(spares_.begin(), spares_.end(),
+                                    [=](const HeldSkip& one) { return one.blocks == blocks; });
+    if (spare != spares_.end()) {
+        HeldSkip one = std::move(*spare);
+        spares_.erase(spare);
+        one.slices = 0;
+        return one;
+    }
+    return allocateFreeLengths(blocks, caps).map([&](SkipTexture&& made) {
+        return HeldSkip{0, std::move(made), blocks};
+    });
+}
+
 Result<void> GpuScene::needGrid(const BuiltSkip& skip, std::int64_t mostBytes,
                                 const gl::Caps& caps) {
     const FreeLengths& grid = *skip.lengths;
     HeldSkip* one = held(skip);
     if (one == nullptr) {
-        if (!spare_ || spare_->blocks != grid.blocks) {
-            Result<SkipTexture> made = allocateFreeLengths(grid.blocks, caps);
-            if (!made) {
-                return tl::unexpected(made.error());
-            }
-            spare_ = HeldSkip{0, std::move(*made), grid.blocks};
+        Result<HeldSkip> empty = emptyGrid(grid.blocks, caps);
+        if (!empty) {
+            return tl::unexpected(empty.error());
         }
-        one = &skips_.emplace_back(std::move(*spare_));
-        spare_.reset();
+        one = &skips_.emplace_back(std::move(*empty));
         one->generation = skip.generation;
-        one->slices = 0;
     }
     while (!one->whole() && mostBytes > 0) {
         const int slices = slicesWithin(std::min(mostBytes, kStagingBytes), grid.blocks);
@@ -206,10 +218,12 @@ void GpuScene::adopt(const BuiltSkip& skip, SkipTexture texture) {
 
 std::int64_t GpuScene::skipBytes() const {
     std::int64_t bytes = 0;
-    for (const HeldSkip& one : skips_) {
-        bytes += one.texture.bytes;
+    for (const std::vector<HeldSkip>* kept : {&skips_, &spares_}) {
+        for (const HeldSkip& one : *kept) {
+            bytes += one.texture.bytes;
+        }
     }
-    return bytes + (spare_ ? spare_->texture.bytes : 0);
+    return bytes;
 }
 
 void GpuScene::bind(const BuiltSkip& skip) const {
@@ -233,8 +247,8 @@ void GpuScene::forget() {
     for (HeldSkip& one : skips_) {
         one.texture.texture.forget();
     }
-    if (spare_) {
-        spare_->texture.texture.forget();
+    for (HeldSkip& one : spares_) {
+        one.texture.texture.forget();
     }
     *this = GpuScene();
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "core/frame/frame_plan.h"
@@ -32,7 +31,7 @@ public:
     void bind(const BuiltSkip& skip) const;
 
     std::int64_t volumeBytes() const { return volumeBytes_; }
-    std::int64_t skipBytes() const; // of all structures
+    std::int64_t skipBytes() const; // of all structures, and of spare ones
     std::int64_t tableBytes() const { return tableBytes_; }
 
     void forget();
@@ -61,12 +60,13 @@ private:
     Result<void> updateTable(const Scene& scene, const gl::Caps& caps);
     Result<void> updateSkips(const Scene& scene, const FramePlan& plan, const gl::Caps& caps);
     Result<void> needOctree(const BuiltSkip& skip, const gl::Caps& caps);
+    Result<HeldSkip> emptyGrid(glm::ivec3 blocks, const gl::Caps& caps);
     Result<void> needGrid(const BuiltSkip& skip, std::int64_t mostBytes, const gl::Caps& caps);
 
     Sources held_;
     gl::Texture volume_, table_;
     std::vector<HeldSkip> skips_;
-    std::optional<HeldSkip> spare_; // a grid's, for the next one: no frame allocates it anew
+    std::vector<HeldSkip> spares_; // of grids, longest unused first: no frame allocates anew
     std::int64_t volumeBytes_ = 0;
     std::int64_t tableBytes_ = 0;
 };

@@ -267,6 +267,19 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
     return {};
 }
 
+Result<void> Renderer::reserve(const Scene& scene, const FramePlan& plan,
+                               std::span<const ViewTarget> views) {
+    const gl::StateGuard guard;
+    Result<void> done;
+    for (const ViewTarget& target : views) {
+        const Viewport& v = target.viewport;
+        if (v.width > 0 && v.height > 0 && needsLayer(plan, target.encoding)) {
+            done = done.and_then([&] { return state_->resizeLayer(scene, plan, v); });
+        }
+    }
+    return done;
+}
+
 /// Counts run by run. What is left out behind a run depends on the picture so far, so that the
 /// picture is drawn beside.
 Result<void> Renderer::State::count(const Scene& scene, const FramePlan& plan,

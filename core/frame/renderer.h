@@ -95,6 +95,11 @@ public:
     /// plan, or one that uses the same textures. Fails: DeviceOutOfMemory (a layer of our own).
     Result<void> draw(const Scene& scene, const FramePlan& plan, std::span<const ViewTarget> views);
 
+    /// Makes the layer of our own that draw() would need for these views, so that it need not.
+    /// Fails: DeviceOutOfMemory.
+    Result<void> reserve(const Scene& scene, const FramePlan& plan,
+                         std::span<const ViewTarget> views);
+
     /// Draws the same frame once more, counting instead of colouring, and waits for the sums.
     /// Fails: DeviceUnsupported where float32 targets do not blend (GL_EXT_float_blend).
     Result<WorkCounters> countWork(const Scene& scene, const FramePlan& plan,

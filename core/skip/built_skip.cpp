@@ -8,7 +8,7 @@
 #include "core/skip/chebyshev.h"
 #include "core/skip/minmax_octree.h"
 #include "core/skip/proximity_cloud.h"
-#include "core/skip/skip_texture.h"
+#include "core/skip/skip_layout.h"
 
 namespace slabcast {
 

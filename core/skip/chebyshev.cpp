@@ -125,11 +125,13 @@ BuildStages chebyshevStages(const OctreeLevel& ranges, int blockEdgeVoxels,
 }
 
 BuildStages chebyshevStages(FreeLengths& marked) {
-    const ChebyshevTransform transform{marked.blocks, marked.counts.data()};
+    const auto transform = [&marked] { // when there is room
+        return ChebyshevTransform{marked.blocks, marked.counts.data()};
+    };
     const std::int64_t slices = marked.blocks.z;
-    return {{slices, [=](auto begin, auto end) { transform.withinSlices(begin, end); }},
-            {slices, [=](auto begin, auto end) { transform.upwards(begin, end); }, true},
-            {slices, [=](auto begin, auto end) { transform.downwards(begin, end); }, true}};
+    return {{slices, [=](auto begin, auto end) { transform().withinSlices(begin, end); }},
+            {slices, [=](auto begin, auto end) { transform().upwards(begin, end); }, true},
+            {slices, [=](auto begin, auto end) { transform().downwards(begin, end); }, true}};
 }
 
 Result<FreeLengths> buildChebyshev(const CellVisibility& visibility, int blockEdgeVoxels,

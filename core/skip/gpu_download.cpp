@@ -69,7 +69,7 @@ Result<std::vector<std::uint32_t>> downloadTexels(const SkipTexture& structure,
     gl::BindFramebuffer(GL_READ_FRAMEBUFFER, target.id());
     auto words = readTexels(structure.texture, layout);
     const Result<void> error = takeUploadError("a downloaded skip structure");
-    return error ? words : tl::unexpected(error.error());
+    return error ? std::move(words) : tl::unexpected(error.error());
 }
 
 Result<FreeLengths> downloadFreeLengths(const SkipTexture& lengths, glm::ivec3 blocks,

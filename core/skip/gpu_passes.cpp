@@ -178,9 +178,10 @@ void runPerTexel(const gl::Program& program, glm::ivec3 texels) {
 
 void runGroups(glm::ivec3 groups) {
     gl::DispatchCompute(GLuint(groups.x), GLuint(groups.y), GLuint(groups.z));
-    // The image barrier also keeps a later pass from writing what an earlier one still reads.
+    // The image barrier also keeps a later pass from writing what an earlier one still reads; that
+    // of updates, an upload into what was built here.
     gl::MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
-                      GL_SHADER_STORAGE_BARRIER_BIT);
+                      GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
 } // namespace slabcast

@@ -1,7 +1,6 @@
 #include "core/skip/grid_rebuild.h"
 
 #include <algorithm>
-#include <mutex>
 #include <thread>
 
 #include "core/base/parallel.h"
@@ -16,31 +15,27 @@ namespace {
 using Clock = GridRebuild::Clock;
 
 /// Runs items of a stage from `from` on, one at least; returns the first that was not run. A
-/// further one is begun where it is over by the deadline if it takes no longer than the longest
-/// one so far. Threads are called only where there is time for more than one item.
-std::int64_t runItems(const BuildStage& stage, std::int64_t from, Clock::time_point deadline,
-                      Clock::duration& longestSoFar) {
+/// further one is begun where it is over by the deadline if it takes as long as the one before.
+/// Threads are called only where there is time for more than one item.
+std::int64_t runItems(const BuildStage& stage, std::int64_t from, Clock::time_point deadline) {
     std::atomic<std::int64_t> next{from};
-    const auto runOne = [&](Clock::duration& longest) {
-        const auto start = Clock::now();
+    const auto runOne = [&](Clock::duration& took) {
         const std::int64_t item = next.fetch_add(1);
         if (item >= stage.items) {
             return false;
         }
+        const auto start = Clock::now();
         stage.run(item, item + 1);
-        const auto end = Clock::now();
-        longest = std::max(longest, end - start);
-        return item + 1 < stage.items && end + longest < deadline;
+        took = Clock::now() - start;
+        return item + 1 < stage.items;
     };
-    std::mutex joining;
-    const auto runWhileThereIsTime = [&](std::int64_t, std::int64_t) {
-        Clock::duration longest{};
-        while (runOne(longest)) {
-        }
-        const std::scoped_lock lock(joining);
-        longestSoFar = std::max(longestSoFar, longest);
-    };
-    if (runOne(longestSoFar)) {
+    Clock::duration first{};
+    if (runOne(first) && Clock::now() + first < deadline) {
+        const auto runWhileThereIsTime = [&](std::int64_t, std::int64_t) {
+            Clock::duration took = first;
+            while (Clock::now() + took < deadline && runOne(took)) {
+            }
+        };
         const std::int64_t cores = std::max(1U, std::thread::hardware_concurrency());
         parallelFor(stage.inOrder ? 1 : std::min(cores, stage.items - from - 1), 1,
                     runWhileThereIsTime);
@@ -157,13 +152,12 @@ bool GridRebuild::work(Clock::time_point deadline) {
     };
     bool ranOne = false;
     while (stage_ < stagesNeeded() && (!ranOne || Clock::now() < deadline)) {
-        item_ = runItems(stages_[stage_], item_, deadline, longestItem_);
+        item_ = runItems(stages_[stage_], item_, deadline);
         ranOne = true;
         if (item_ < stages_[stage_].items) {
             break; // no time for another
         }
         item_ = 0;
-        longestItem_ = {};
         ++stage_;
     }
     return stage_ >= stagesNeeded();

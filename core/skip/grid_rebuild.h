@@ -53,7 +53,7 @@ public:
     GridRebuild& operator=(const GridRebuild&) = delete;
 
     /// Runs items on all cores, one at least; begins no other that would be late if it took as
-    /// long as the longest of its stage so far. Whether all is done.
+    /// long as the one before. Whether all is done.
     bool work(Clock::time_point deadline);
 
     /// The earlier grid itself where no block differs. Contract: all is done; asked once.
@@ -74,7 +74,6 @@ private:
     std::atomic<bool> differs_;
     std::size_t stage_ = 0;
     std::int64_t item_ = 0;
-    Clock::duration longestItem_{}; // of the stage
 };
 
 } // namespace slabcast

@@ -7,7 +7,7 @@
 #include "core/base/stopwatch.h"
 #include "core/skip/minmax_octree.h"
 #include "core/skip/occupancy.h"
-#include "core/skip/skip_texture.h"
+#include "core/skip/skip_layout.h"
 
 namespace slabcast {
 
@@ -127,10 +127,14 @@ Result<void> LiveSkip::build(const CellVisibility& visibility, const BuiltSkip& 
 }
 
 void LiveSkip::edit(CellVisibility visibility) {
+    VisibleValues shown = visibleValues(visibility);
+    if (shown == shown_) {
+        return; // other colours: what is begun goes on
+    }
+    shown_ = std::move(shown);
     rebuild_.reset();
     incoming_ = noSkip();
     framesSinceEdit_ = 0;
-    shown_ = visibleValues(visibility);
     visibility_ = std::make_shared<const CellVisibility>(std::move(visibility));
     settledServes_ = settled_.exists() && settled_.shown == shown_;
     if (settledServes_) {
@@ -146,17 +150,16 @@ std::vector<LiveSkip> LiveSkip::eachServing() const {
     std::vector<LiveSkip> each{*this};
     each[0].settledServes_ = false;
     if (hasStructure(options_.settled)) {
+        const auto empty = std::make_shared<const FreeLengths>(
+            FreeLengths{.blocks = ranges_->nodes,
+                        .blockEdgeVoxels = options_.settled.blockEdgeVoxels,
+                        .counts = std::vector<std::uint8_t>(ranges_->words.size(), 255)});
         each.push_back(*this);
         LiveSkip& other = each.back();
         other.settledServes_ = true;
+        other.incoming_ = builtSkip(options_.settled, empty, VisibleValues());
         if (!settled_.exists()) {
-            other.settled_ =
-                builtSkip(options_.settled,
-                          std::make_shared<const FreeLengths>(FreeLengths{
-                              .blocks = ranges_->nodes,
-                              .blockEdgeVoxels = options_.settled.blockEdgeVoxels,
-                              .counts = std::vector<std::uint8_t>(ranges_->words.size(), 255)}),
-                          VisibleValues());
+            other.settled_ = builtSkip(options_.settled, empty, VisibleValues());
         }
     }
     return each;

@@ -41,7 +41,7 @@ struct LiveSource {
 
 enum class LiveProgress : std::uint8_t {
     Settled,  // nothing to do: the structure is the TF's own
-    Waiting,  // for the hand to come to rest
+    Waiting,  // for the hand to come to rest, or for a budget
     Building, // the settled structure is in the making
     Incoming, // it is finished, and its texture is being filled
     Swapped,  // it serves from this call on
@@ -55,8 +55,9 @@ constexpr std::int64_t kUploadBytesPerFrame = 1 << 20;
 /// Which structure serves while a TF changes again and again. At any moment current() is exact
 /// under the last TF: the settled structure where the TF shows nothing that it was not built for,
 /// nor so much less that the other skips more, else the one that is right under any TF. The settled
-/// one is then rebuilt in pieces; a further edit drops what was begun, and so does a copy. No GL.
-/// Not thread-safe; heavy steps use all cores inside. Tested by: live_skip_test.cpp
+/// one is then rebuilt in pieces. What is in the making is dropped by a further edit, where it
+/// shows other values, and by copying. No GL. Not thread-safe; heavy steps use all cores inside.
+/// Tested by: live_skip_test.cpp
 class LiveSkip {
 public:
     /// Builds the structure for all TFs, unless it is `present`; takes `present`, which is right
@@ -73,8 +74,9 @@ public:
     /// blocks; nothing at 0. What is finished serves once there were frames enough to upload it.
     LiveProgress work(double budgetMs);
 
-    /// Of each structure that is used, as it is when that one serves, whether or not it is right
-    /// under the TF of now; an empty grid stands for one that was not built yet.
+    /// Of each structure that is used, as it is when that one serves and another is incoming,
+    /// whether or not they are right under the TF of now: empty grids stand for those that were not
+    /// built yet.
     std::vector<LiveSkip> eachServing() const;
 
     const BuiltSkip& current() const { return settledServes_ ? settled_ : always_; }
@@ -104,7 +106,7 @@ private:
     VisibleValues shown_;                              // of now
     BuiltSkip always_;
     BuiltSkip settled_ = noSkip();
-    double settledFraction_ = 0.0; // that always_ found occupied when settled_ was built
+    double settledFraction_ = 0.0; // that always_ found occupied when settled_ began to serve
     BuiltSkip incoming_ = noSkip();
     int framesToUpload_ = 0; // before it serves
     bool settledServes_ = false;

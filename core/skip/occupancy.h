@@ -28,15 +28,15 @@ struct BlockBytes {
     std::uint8_t occupied;
 };
 
-/// Makes room for a grid's bytes slice by slice: memory is slow when it is first touched. Where
-/// they will lie is settled at once. Shape and block edge of `grid` are set.
+/// Makes room for a grid's bytes slice by slice: memory is slow when it is first touched. Contract:
+/// the shape of `grid` is set.
 BuildStage roomFor(FreeLengths& grid);
 
-/// Occupancy as the bytes that a grid of lengths begins with, and how many blocks are occupied: a
-/// block is where a visible cell meets it grown by one voxel on each side. The voxel of margin
-/// absorbs what the texture unit's addressing and rounded positions may add; no length that is
-/// stored counts on it. The shape of `grid` is set at once, and where its bytes will lie. Cost:
-/// O(blocks). Tested by: chebyshev_test.cpp
+/// Occupancy as the bytes that a grid of lengths begins with, and how many blocks are occupied,
+/// which a block is where a visible cell meets it grown by one voxel on each side. The voxel of
+/// margin absorbs what the texture unit's addressing and rounded positions may add; no length that
+/// is stored counts on it. The shape of `grid` is set at once. Cost: O(blocks). Tested by:
+/// chebyshev_test.cpp
 BuildStages occupancyStages(const OctreeLevel& ranges, int blockEdgeVoxels,
                             const CellVisibility& visibility, BlockBytes bytes, FreeLengths& grid);
 

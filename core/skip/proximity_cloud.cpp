@@ -233,17 +233,18 @@ BuildStages proximityStages(const VolumeGeometry& geometry, FreeLengths& marked)
     marked.quantumMm = geometry.smallestVoxelEdgeMm();
     const auto gaps = std::make_shared<SquaredGaps>(
         proximityUnits(geometry, marked.blockEdgeVoxels), marked.blocks);
-    std::uint8_t* counts = marked.counts.data();
     const auto add = [&](std::int64_t items, auto step) {
         stages.push_back({items, [=, &marked](std::int64_t begin, std::int64_t end) {
                               if (marked.occupiedBlocks > 0) { // else all bytes are as they end
-                                  step(begin, end);
+                                  step(marked.counts.data(), begin, end);
                               }
                           }});
     };
-    add(marked.blocks.z, [=](auto begin, auto end) { gaps->withinSlices(counts, begin, end); });
-    add(marked.blocks.y, [=](auto begin, auto end) { gaps->acrossSlices(begin, end); });
-    add(marked.blocks.z, [=](auto begin, auto end) { gaps->write(counts, begin, end); });
+    add(marked.blocks.z,
+        [=](auto* counts, auto begin, auto end) { gaps->withinSlices(counts, begin, end); });
+    add(marked.blocks.y, [=](auto*, auto begin, auto end) { gaps->acrossSlices(begin, end); });
+    add(marked.blocks.z,
+        [=](auto* counts, auto begin, auto end) { gaps->write(counts, begin, end); });
     return stages;
 }
 

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/gl/state_guard.h"
-#include "core/skip/skip_structure.h"
 
 namespace slabcast {
 
@@ -24,20 +23,6 @@ constexpr TexelLayout kLayouts[] = {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr const char* kFreeLengths = "free lengths"; // in messages
-
-std::int64_t volumeOf(glm::ivec3 size) {
-    return std::int64_t(size.x) * size.y * size.z;
-}
-
-glm::ivec3 texelsOf(glm::ivec3 values, int perTexel) {
-    return {(values.x + perTexel - 1) / perTexel, values.y, values.z};
-}
-
-/// Width and height of a texture of so many texels, log2, such that it is about as deep: from 0.35
-/// to 2.8 times. 1 at least: 0 stands for a level that is the texture.
-int foldOf(std::int64_t texels) {
-    return std::max(1, int(std::lround(std::log2(double(texels)) / 3.0)));
-}
 
 /// A level's values in its place among `words`, which hold zeros. Narrow values are empty as zeros.
 template <class Value>
@@ -62,58 +47,13 @@ void pack(std::span<const Value> values, glm::ivec3 size, const SkipLayout& layo
 }
 
 std::vector<std::uint32_t> noWords(const SkipLayout& layout) {
-    return std::vector<std::uint32_t>(volumeOf(layout.texels) * layout.wordsPerTexel());
-}
-
-SkipLayout layoutOf(const Octree& octree) {
-    return octreeLayout(octree.levels.front().nodes, int(octree.levels.size()), octree.bitsPerNode);
+    return std::vector<std::uint32_t>(layout.texelCount() * layout.wordsPerTexel());
 }
 
 } // namespace
 
-std::int64_t SkipLayout::bytes() const {
-    return volumeOf(texels) * texelLayoutOf(*this).bytesPerTexel;
-}
-
-SkipLayout gridLayout(glm::ivec3 values, int bitsPerValue) {
-    const int perTexel = bitsPerValue < 32 ? 32 / bitsPerValue : 1;
-    const glm::ivec3 texels = texelsOf(values, perTexel);
-    return {bitsPerValue, perTexel, texels, {{texels}}};
-}
-
-SkipLayout freeLengthLayout(glm::ivec3 blocks) {
-    return gridLayout(blocks, 8);
-}
-
-SkipLayout octreeLayout(glm::ivec3 leaves, int levels, int bitsPerNode) {
-    SLABCAST_EXPECTS(levels > 0 && levels <= kMaxOctreeLevels, levels);
-    SkipLayout layout = gridLayout(leaves, bitsPerNode);
-    layout.levels.clear();
-    std::int64_t total = 0;
-    for (int level = 0; level < levels; ++level) {
-        const glm::ivec3 texels = texelsOf(blocksOf(leaves, 1 << level), layout.perTexel);
-        layout.levels.push_back({texels, int(total)});
-        total += volumeOf(texels);
-    }
-    const int fold = foldOf(total);
-    for (SkipLevel& level : layout.levels) {
-        level.fold = fold;
-    }
-    const std::int64_t perSlice = std::int64_t(1) << (2 * fold);
-    layout.texels = glm::ivec3(1 << fold, 1 << fold, (total + perSlice - 1) / perSlice);
-    return layout;
-}
-
 const TexelLayout& texelLayoutOf(const SkipLayout& layout) {
     return kLayouts[layout.bits <= 32 ? 0 : layout.bits / 64];
-}
-
-std::int64_t gpuBytes(const FreeLengths& lengths) {
-    return freeLengthLayout(lengths.blocks).bytes();
-}
-
-std::int64_t gpuBytes(const Octree& octree) {
-    return layoutOf(octree).bytes();
 }
 
 Result<void> checkFits(const SkipLayout& layout, const gl::Caps& caps) {
@@ -128,8 +68,8 @@ Result<void> checkFits(const SkipLayout& layout, const gl::Caps& caps) {
                         std::to_string(caps.maxTexture3DSize));
     }
     constexpr int kMost = std::numeric_limits<int>::max();
-    if (volumeOf(layout.texels) > kMost) {
-        return tooLarge(std::to_string(volumeOf(layout.texels)) + " texels, shaders count to " +
+    if (layout.texelCount() > kMost) {
+        return tooLarge(std::to_string(layout.texelCount()) + " texels, shaders count to " +
                         std::to_string(kMost));
     }
     return {};
@@ -145,11 +85,6 @@ Result<SkipTexture> allocateSkip(const char* label, const SkipLayout& layout,
         .map([&](gl::Texture&& texture) {
             return SkipTexture{std::move(texture), layout.bytes()};
         });
-}
-
-int slicesWithin(std::int64_t bytes, glm::ivec3 blocks) {
-    const std::int64_t perSlice = freeLengthLayout({blocks.x, blocks.y, 1}).bytes();
-    return int(std::clamp<std::int64_t>(bytes / perSlice, 1, blocks.z));
 }
 
 Result<SkipTexture> allocateFreeLengths(glm::ivec3 blocks, const gl::Caps& caps) {
@@ -181,16 +116,16 @@ Result<SkipTexture> uploadFreeLengths(const FreeLengths& lengths, const gl::Caps
 
 Result<SkipTexture> uploadOctree(const Octree& octree, const gl::Caps& caps) {
     const SkipLayout layout = layoutOf(octree);
+    constexpr const char* kOctree = "octree";
+    Result<SkipTexture> made = allocateSkip(kOctree, layout, caps); // or it is too large to pack
+    if (!made) {
+        return made;
+    }
     std::vector<std::uint32_t> words = noWords(layout);
     for (std::size_t i = 0; i < octree.levels.size(); ++i) {
         const OctreeLevel& level = octree.levels[i];
         pack(std::span<const std::uint32_t>(level.words), level.nodes, layout, layout.levels[i],
              words.data());
-    }
-    constexpr const char* kOctree = "octree";
-    Result<SkipTexture> made = allocateSkip(kOctree, layout, caps);
-    if (!made) {
-        return made;
     }
     return fillSlices(kOctree, made->texture, texelLayoutOf(layout), {layout.texels}, words.data())
         .map([&] { return std::move(*made); });

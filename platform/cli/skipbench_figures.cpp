@@ -167,35 +167,44 @@ void addBlocks(json& figures, const json& rows, const json& volume) {
 }
 
 /// The best of these rows against none at its best ratio.
-json hybridFigure(const std::vector<const json*>& rows, const json& volume, std::string key,
-                  std::string name, std::optional<double> goal) {
-    std::vector<const json*> without, with;
-    for (const json* row : rows) {
-        ((*row)["structure"] == "none" ? without : with).push_back(row);
-    }
-    const json* best = fastest(with);
-    const std::string by = best ? fmt::format("{}, {} layers a plane", best->value("structure", ""),
-                                              best->value("layersPerPlane", 0))
-                                : "not measured";
-    return figure(std::move(key), std::move(name), volume, pairedTimes(fastest(without), best),
-                  goal, Goal::AtLeast, "times as fast, each at its best ratio; " + by);
+/// Rows of the hybrid of a mode, with planes of the one kind or the other, that skip or do not.
+std::vector<const json*> hybrids(const json& rows, const json& volume, const char* mode,
+                                 bool tighten, bool skip) {
+    std::vector<const json*> found = rowsWith(rows, {{"table", "frames"},
+                                                     {"volume", volume["name"]},
+                                                     {"family", "hybrid"},
+                                                     {"mode", mode},
+                                                     {"tighten", tighten}});
+    std::erase_if(found, [=](const json* row) { return ((*row)["structure"] != "none") != skip; });
+    return found;
 }
 
 void addHybrid(json& figures, const json& rows, const json& volume) {
+    // Rectangles come from a structure, but what does not skip has them too unless told otherwise.
+    const struct {
+        const char* key;
+        const char* name;
+        bool tightWith, tightWithout;
+        std::optional<double> goal;
+    } kinds[] = {
+        {"rectangles", "both with planes as rectangles", true, true, goalIf(isBone(volume), 2.0)},
+        {"sphere", "both with planes of the sphere", false, false, std::nullopt},
+        {"structure", "planes as rectangles, against none of the sphere", true, false,
+         std::nullopt},
+    };
     for (const char* mode : {"early exit", "marching only"}) {
-        for (const bool tighten : {true, false}) {
-            const std::vector<const json*> alike = rowsWith(rows, {{"table", "frames"},
-                                                                   {"volume", volume["name"]},
-                                                                   {"family", "hybrid"},
-                                                                   {"mode", mode},
-                                                                   {"tighten", tighten}});
-            const char* planes = tighten ? "planes as rectangles" : "planes of the sphere";
-            // Rectangles are what is drawn unless told otherwise.
-            figures.push_back(hybridFigure(
-                alike, volume,
-                fmt::format("hybrid_{}_{}_speedup", keyOf(mode), tighten ? "rectangles" : "sphere"),
-                fmt::format("hybrid against its own best without, {}, {}", mode, planes),
-                goalIf(tighten && isBone(volume), 2.0)));
+        for (const auto& kind : kinds) {
+            const json* best = fastest(hybrids(rows, volume, mode, kind.tightWith, true));
+            const json* none = fastest(hybrids(rows, volume, mode, kind.tightWithout, false));
+            const std::string by =
+                best ? fmt::format("{}, {} layers a plane", best->value("structure", ""),
+                                   best->value("layersPerPlane", 0))
+                     : "not measured";
+            figures.push_back(
+                figure(fmt::format("hybrid_{}_{}_speedup", keyOf(mode), kind.key),
+                       fmt::format("hybrid against its own best without, {}, {}", mode, kind.name),
+                       volume, pairedTimes(none, best), kind.goal, Goal::AtLeast,
+                       "times as fast, each at its best ratio; " + by));
         }
     }
 }
