@@ -11,8 +11,9 @@ namespace slabcast {
 
 namespace {
 
-/// Of what the last frame took to draw, for rebuilding: short frames stay short.
-constexpr double kMostOfFrame = 0.25;
+/// Of what the last frame took to draw, for rebuilding: short frames stay short, and have little to
+/// gain. A tenth, where such frames vary by a third themselves.
+constexpr double kMostOfFrame = 0.1;
 
 /// Without skipping, and without what it adds.
 Settings plain(Settings settings) {
