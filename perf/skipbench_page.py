@@ -23,7 +23,7 @@ def volume_sections(bench, entry):
                      + PAIRED)
     others = figure(plots.families(bench, volume), bench,
                     "Filled: planes as rectangles around what the structure finds visible; hollow: planes of the "
-                    "whole sphere; none has its rectangles from blocks. Hybrid: each at its best ratio, against none of "
+                    "whole sphere. Rectangles of none are from blocks. Hybrid: each at its best ratio, against none of "
                     "the whole sphere at its own best. " + PAIRED)
     merges = figure(plots.merging(bench, volume), bench,
                     "Merging partitioned maps against rebuilding the Chebyshev map (black; the median of the transfer "

@@ -65,8 +65,10 @@ def _name_axis(panels, text, narrow):
 
 
 def _skipping(bench, volume, family, mode):
-    """Rows of frames but none's."""
-    return [row for row in bench.of("frames", volume=volume, family=family, mode=mode) if row.structure != "none"]
+    """Rows of frames but what all are compared with; none with rectangles first."""
+    rows = bench.of("frames", volume=volume, family=family, mode=mode)
+    return sorted((row for row in rows if row.structure != "none" or row.get("tighten")),
+                  key=lambda row: row.structure != "none")
 
 
 def speedups(bench, volume):
