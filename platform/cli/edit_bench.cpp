@@ -14,6 +14,7 @@ namespace {
 /// Of what the last frame took to draw, for rebuilding: short frames stay short, and have little to
 /// gain. A tenth, where such frames vary by a third themselves.
 constexpr double kMostOfFrame = 0.1;
+constexpr double kLeastMs = 0.1; // or what is begun would never end beside frames of no length
 
 /// Without skipping, and without what it adds.
 Settings plain(Settings settings) {
@@ -106,7 +107,8 @@ Result<void> EditBench::drawLive(const EditFrame& frame, double turnDegrees, Edi
         }
     }
     row.editMs = watch.lapMs();
-    row.progress = live_.work(std::min(options_.workBudgetMs, kMostOfFrame * lastDrawMs_));
+    row.progress =
+        live_.work(std::min(options_.workBudgetMs, std::max(kLeastMs, kMostOfFrame * lastDrawMs_)));
     row.workMs = watch.lapMs();
     const Result<FramePlan> plan = planOf(live_, settings_);
     Result<void> done =

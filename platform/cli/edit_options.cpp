@@ -53,7 +53,7 @@ void bindEdit(CLI::App& command, EditOptions& o) {
         ->group(edits);
     addNumber(command, "--work", o.workBudgetMs, 0.0, 1e6,
               "what a frame may spend on rebuilding the structure that --skip names, at most a "
-              "tenth of what the last one took to draw")
+              "tenth of what the last one took to draw, or 0.1 ms where that is more")
         ->type_name("MS")
         ->default_str(fmt::format("{:g}", o.workBudgetMs))
         ->group(edits);
