@@ -76,7 +76,7 @@ std::vector<SkipOptions> searchGrid(SkipStructure structure, glm::ivec3 dims, bo
     spread(all, &SkipOptions::initialLevel, axes.levels);
     spread(all, &SkipOptions::traversal, axes.traversals);
     const auto beyondTheLeaves = [dims](const SkipOptions& o) {
-        const glm::ivec3 leaves = (dims + o.blockEdgeVoxels - 1) / o.blockEdgeVoxels;
+        const glm::ivec3 leaves = blocksOf(dims, o.blockEdgeVoxels);
         return isOctree(o.structure) && o.initialLevel >= levelsToRoot(leaves);
     };
     std::erase_if(all, beyondTheLeaves);
