@@ -1,9 +1,9 @@
-# Writes OUT, a C++ source that defines slabcast::shaderTexts(): file name -> text of every file in SHADERS.
+# Writes OUT, a C++ source that defines slabcast::shaderTexts(): path below FOLDER -> text of every file in SHADERS.
 set(text "// Generated from gles_shaders/. Do not edit.\n#include \"core/gl/shader_text.h\"\n\n")
 string(APPEND text "namespace slabcast {\n\nconst std::map<std::string, std::string>& shaderTexts() {\n")
 string(APPEND text "    static const std::map<std::string, std::string> texts = {\n")
 foreach(shader IN LISTS SHADERS)
-    get_filename_component(name "${shader}" NAME)
+    file(RELATIVE_PATH name "${FOLDER}" "${shader}")
     file(READ "${shader}" content)
     string(APPEND text "        {\"${name}\", R\"SLABCAST(${content})SLABCAST\"},\n")
 endforeach()

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/frame/lattice.h"
+#include "core/view/lattice.h"
 
 namespace slabcast {
 

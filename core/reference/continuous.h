@@ -6,8 +6,8 @@
 #include <glm/glm.hpp>
 
 #include "core/base/parallel.h"
-#include "core/frame/lattice.h"
 #include "core/transfer/transfer_function.h"
+#include "core/view/lattice.h"
 #include "core/volume/texels.h"
 
 namespace slabcast {

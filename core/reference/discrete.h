@@ -6,11 +6,11 @@
 
 #include <glm/glm.hpp>
 
-#include "core/frame/lattice.h"
 #include "core/transfer/preclassified.h"
 #include "core/transfer/preintegrated.h"
 #include "core/transfer/shading.h"
 #include "core/transfer/transfer_function.h"
+#include "core/view/lattice.h"
 #include "core/volume/texels.h"
 
 namespace slabcast {

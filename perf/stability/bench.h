@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/frame/renderer.h"
+#include "core/draw/renderer.h"
 #include "core/gl/color_targets.h"
-#include "core/volume/texel_format.h"
+#include "core/scene/texel_format.h"
 #include "perf/stability/case.h"
 
 namespace slabcast::stability {

@@ -4,7 +4,7 @@
 
 #include <glm/glm.hpp>
 
-#include "core/frame/scene.h"
+#include "core/scene/scene.h"
 #include "perf/stability/bench.h"
 #include "perf/stability/reference_picture.h"
 

@@ -4,8 +4,8 @@
 
 #include <glm/glm.hpp>
 
-#include "core/frame/scene.h"
-#include "core/frame/view.h"
+#include "core/scene/scene.h"
+#include "core/view/view.h"
 
 namespace slabcast {
 

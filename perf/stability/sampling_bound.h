@@ -2,8 +2,8 @@
 
 #include <functional>
 
-#include "core/frame/scene.h"
-#include "core/frame/view.h"
+#include "core/scene/scene.h"
+#include "core/view/view.h"
 
 namespace slabcast::stability {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
-#include "core/frame/scene.h"
-#include "core/frame/view.h"
 #include "core/reference/discrete.h"
+#include "core/scene/scene.h"
+#include "core/view/view.h"
 
 namespace slabcast::stability {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/frame/error_table.h"
+#include "perf/error/error_table.h"
 #include "platform/cli/options.h"
 
 namespace slabcast {

@@ -6,7 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "core/base/stopwatch.h"
-#include "core/frame/ratio_tuner.h"
+#include "core/draw/ratio_tuner.h"
 #include "core/gl/api.h"
 #include "platform/cli/progress.h"
 

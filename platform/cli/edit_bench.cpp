@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/stopwatch.h"
-#include "core/frame/warm_up.h"
+#include "core/draw/warm_up.h"
 #include "core/gl/api.h"
 #include "platform/cli/progress.h"
 

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/frame/error_table.h"
+#include "perf/error/error_table.h"
 
 namespace slabcast {
 

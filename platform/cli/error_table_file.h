@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/frame/error_table.h"
+#include "perf/error/error_table.h"
 #include "platform/cli/draw.h"
 
 namespace slabcast {

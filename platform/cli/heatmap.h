@@ -5,7 +5,7 @@
 
 #include <glm/glm.hpp>
 
-#include "core/frame/renderer.h"
+#include "core/draw/renderer.h"
 
 namespace slabcast {
 

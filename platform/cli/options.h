@@ -7,8 +7,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "core/frame/frame_plan.h"
-#include "core/frame/renderer.h"
+#include "core/draw/renderer.h"
+#include "core/plan/frame_plan.h"
 #include "platform/cli/error_grid.h"
 #include "platform/cli/heatmap.h"
 #include "platform/cli/session.h"

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "core/frame/renderer.h"
-#include "core/frame/scene.h"
-#include "core/volume/texel_format.h"
+#include "core/draw/renderer.h"
+#include "core/scene/scene.h"
+#include "core/scene/texel_format.h"
 #include "platform/egl/egl_context.h"
 
 namespace slabcast {

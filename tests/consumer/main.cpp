@@ -1,7 +1,7 @@
 // Draws a phantom into a framebuffer of its own, with the installed package alone.
 #include <array>
 
-#include "core/frame/renderer.h"
+#include "core/draw/renderer.h"
 #include "core/volume/phantoms.h"
 #include "own_target.h"
 #include "platform/egl/egl_context.h"

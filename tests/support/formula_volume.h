@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/frame/view.h"
 #include "core/transfer/transfer_function.h"
+#include "core/view/view.h"
 #include "core/volume/texels.h"
 
 namespace slabcast::test {

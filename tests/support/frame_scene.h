@@ -9,8 +9,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include "core/frame/lattice.h"
-#include "core/frame/view.h"
+#include "core/view/lattice.h"
+#include "core/view/view.h"
 #include "core/volume/volume.h"
 
 namespace slabcast::test {

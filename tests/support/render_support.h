@@ -7,9 +7,9 @@
 
 #include <glm/glm.hpp>
 
-#include "core/frame/renderer.h"
+#include "core/draw/renderer.h"
 #include "core/gl/color_targets.h"
-#include "core/volume/texel_format.h"
+#include "core/scene/texel_format.h"
 #include "perf/stability/reference_picture.h"
 #include "tests/support/gl_fixture.h"
 

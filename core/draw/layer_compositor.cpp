@@ -1,0 +1,14 @@
+#include "core/draw/layer_compositor.h"
+
+#include "core/gl/api.h"
+
+namespace slabcast {
+
+void LayerCompositor::composite(GLuint texture, int x, int y, LayerConversion conversion) const {
+    const gl::Program& program = pass_.begin(texture);
+    gl::Uniform2i(program.uniform("layerOrigin"), x, y);
+    gl::Uniform1i(program.uniform("conversion"), static_cast<GLint>(conversion));
+    pass_.draw();
+}
+
+} // namespace slabcast

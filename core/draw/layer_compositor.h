@@ -1,0 +1,21 @@
+#pragma once
+
+#include "core/draw/fullscreen_pass.h"
+
+namespace slabcast {
+
+/// How a layer's colours become the target's.
+enum class LayerConversion : std::uint8_t { None = 0, Encode = 1, Decode = 2 };
+
+/// Blends a layer over the bound framebuffer's viewport at (x, y), once.
+class LayerCompositor {
+public:
+    Result<void> create() { return pass_.create("composite", "pass/composite.frag"); }
+    void composite(GLuint texture, int x, int y, LayerConversion conversion) const;
+    void forget() { pass_.forget(); }
+
+private:
+    FullscreenPass pass_;
+};
+
+} // namespace slabcast

@@ -1,0 +1,120 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/gl/caps.h"
+#include "core/plan/shader_variant.h"
+#include "core/transfer/transfer_function.h"
+#include "core/view/lattice.h"
+
+namespace slabcast {
+
+/// What planes are blended into.
+enum class TargetFormat : std::uint8_t { Rgba8, Rgba16f };
+enum class SegmentForm : std::uint8_t { Auto, Unrolled, Loop };
+/// Planes over what is there, or nearest first under what is gathered, in a layer of our own.
+enum class BlendOrder : std::uint8_t { BackToFront, FrontToBack };
+
+const char* name(TargetFormat format);
+const char* name(BlendOrder order);
+
+/// What a user may ask for. Unset optionals are decided by the plan.
+struct Settings {
+    Classification classification = Classification::Post;
+    std::optional<SkipStructure> skip;
+    LatticeKind lattice = LatticeKind::Planar;
+    bool jitter = false;             // moves every ray's layers by up to half a layer
+    double layerSpacingVoxels = 1.0; // of the smallest voxel edge
+    std::optional<int> totalLayers;  // instead of the spacing
+    std::optional<int> planes;       // at most one of planes and layersPerPlane
+    std::optional<int> layersPerPlane;
+    SegmentForm form = SegmentForm::Auto;
+    bool tighten = true;
+    TargetFormat target = TargetFormat::Rgba8;
+    CompositingSpace space = CompositingSpace::Display;
+    bool shaded = false;
+    std::optional<BlendOrder> order;
+    /// Opacity at which a segment is left and, front to back, a pixel: what is lost behind is at
+    /// most one 8-bit step.
+    std::optional<double> termination = 1.0 - 1.0 / 256.0;
+};
+
+/// What a plan needs to know of the volume under its transfer function.
+struct SceneFacts {
+    BoundingSphere sphere;
+    double smallestVoxelEdgeMm = 1.0;
+    bool exactField = false;
+    bool anythingVisible = true;
+    SkipOptions skip; // the structure that was built: what can skip, and tighten planes
+    double occupiedFraction = 1.0; // of its blocks or leaves
+    bool oneMaterial = false;      // the transfer function is constant over the data
+    double maxExtinctionPerMm = 0.0;
+    double visibleColorRange = 1.0; // of any channel
+    bool wideTable = false;         // extinction spans more than fp16 keeps
+};
+
+/// One way to deal the layers out to planes.
+struct Ratio {
+    int planes = 1;
+    int layersPerPlane = 1;
+    SegmentForm form = SegmentForm::Loop;
+
+    bool operator==(const Ratio&) const = default;
+};
+
+std::string name(const Ratio& ratio); // "28x16 unrolled"
+
+/// What a ratio took on this device: the input of `auto`.
+struct RatioMeasurement {
+    Ratio ratio;
+    double frameMs = 0.0;
+};
+
+struct Reason {
+    std::string what;
+    std::string why;
+
+    bool operator==(const Reason&) const = default;
+};
+
+/// Everything that a frame does, decided. Two pictures are of the same settings when their plans
+/// are equal: in everything but the reasons, which hold what was measured.
+struct FramePlan {
+    Lattice lattice;
+    int planes = 1;
+    int layersPerPlane = 1;
+    ShaderVariant variant;
+    SkipStructure skip = SkipStructure::None;
+    bool tighten = false;
+    TargetFormat target = TargetFormat::Rgba8;
+    CompositingSpace space = CompositingSpace::Display;
+    double terminationAlpha = 1.0;
+    BlendOrder order = BlendOrder::BackToFront;
+    int planesPerMark = 0; // front to back: planes between marks of saturated pixels; 0: no marks
+    bool drawsNothing = false;
+    std::vector<Reason> reasons;
+
+    bool operator==(const FramePlan& other) const;
+};
+
+/// Stored alpha above which a pixel of the plan's layer counts as having passed the termination
+/// opacity: a stored value stands for all that lie within half a step of it.
+double saturatedAlpha(const FramePlan& plan);
+
+/// Total layers that the settings ask for: the given number or enough for the sphere at the
+/// spacing, and one more where jitter moves them.
+int totalLayers(const Settings& settings, const SceneFacts& facts);
+
+/// Ratios worth measuring for `auto`, from ray casting to slicing.
+std::vector<Ratio> ratioCandidates(const Settings& settings, const SceneFacts& facts);
+
+/// Pure: no GL, no clock. Leaves out what the scene does not need and says why.
+/// Fails: InvalidArgument (a number outside its range; planes and layersPerPlane both set; an
+/// unrolled form beyond the list). Tested by: frame_plan_test.cpp
+Result<FramePlan> plan(const SceneFacts& facts, const Settings& settings, const gl::Caps& caps,
+                       std::span<const RatioMeasurement> measurements);
+
+} // namespace slabcast

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "core/plan/frame_plan.h"
+
+namespace slabcast {
+
+inline constexpr int kMaxTotalLayers = 1 << 20;
+
+/// Three significant digits, as reasons and refusals say it.
+std::string shortNumber(double value);
+
+/// Fails: InvalidArgument (a number outside its range, settings that exclude each other, a skip
+/// structure other than what was built), with what to do instead.
+Result<void> check(const Settings& settings, const SceneFacts& facts);
+
+} // namespace slabcast

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <glm/glm.hpp>
+
+#include "core/gl/caps.h"
+#include "core/volume/texels.h"
+
+namespace slabcast {
+
+/// What showing a volume takes, before anything is allocated.
+struct MemoryForecast {
+    std::int64_t gpuTexelBytes = 0;
+    std::int64_t hostVoxelBytes = 0; // the volume as loaded
+    std::int64_t hostTexelBytes = 0; // what is uploaded, or classified first
+    std::int64_t hostClassifiedBytes = 0;
+    std::int64_t hostCodeBytes = 0; // codes that the skip structures are built from
+    std::int64_t hostBytes() const {
+        return hostVoxelBytes + hostTexelBytes + hostClassifiedBytes + hostCodeBytes;
+    }
+};
+
+/// Bytes per texel of the texture that is drawn from: the scalars' or, `preclassified`, the
+/// colours'.
+std::int64_t uploadedBytesPerTexel(TexelFormat format, bool preclassified);
+
+/// Fails: EmptyVolume, SizeOverflow. Tested by: texel_format_gl_test.cpp
+Result<MemoryForecast> forecastMemory(glm::ivec3 dims, VoxelType type, TexelFormat format,
+                                      bool preclassified = false);
+
+/// Fails: EmptyVolume, SizeOverflow.
+Result<std::int64_t> forecastTextureBytes(glm::ivec3 dims, TexelFormat format);
+
+/// Whether the texture stays within the device's 3D texture limit and the budget, if there is one.
+/// Fails: VolumeTooLarge, naming the limit and the smallest `--downsample N` that fits;
+/// EmptyVolume, SizeOverflow.
+Result<void> checkFits(glm::ivec3 dims, std::int64_t bytesPerTexel, const gl::Caps& caps,
+                       std::optional<std::int64_t> gpuBudgetBytes = std::nullopt);
+
+} // namespace slabcast

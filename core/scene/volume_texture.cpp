@@ -1,0 +1,82 @@
+#include "core/scene/volume_texture.h"
+
+#include <cmath>
+#include <string>
+
+#include "core/scene/memory_forecast.h"
+
+namespace slabcast {
+
+namespace {
+
+// In the order of TexelFormat.
+constexpr TexelLayout kTexelLayouts[] = {
+    {GL_R8, GL_RED, GL_UNSIGNED_BYTE, GL_LINEAR, 1},
+    {GL_R16_EXT, GL_RED, GL_UNSIGNED_SHORT, GL_LINEAR, 2},
+    {GL_R16F, GL_RED, GL_HALF_FLOAT, GL_LINEAR, 2},
+    {GL_RG8, GL_RG, GL_UNSIGNED_BYTE, GL_NEAREST, 2},
+    {GL_R32F, GL_RED, GL_FLOAT, GL_NEAREST, 4},
+};
+constexpr TexelLayout kClassifiedLayout = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_LINEAR, 4};
+
+Result<gl::Texture> uploadVoxels(const char* label, const TexelLayout& layout, glm::ivec3 dims,
+                                 const void* data, const gl::Caps& caps) {
+    if (const auto fits = checkFits(dims, layout.bytesPerTexel, caps); !fits) {
+        return tl::unexpected(fits.error());
+    }
+    return upload3d(label, layout, dims, data);
+}
+
+/// A transfer table.
+Result<gl::Texture> uploadTable2d(glm::i64vec2 size, GLenum format, GLint filter, GLenum type,
+                                  const void* texels, const gl::Caps& caps) {
+    // As wide as high, or one row: no table is higher than wide.
+    if (size.x == 0 || size.x > caps.maxTextureSize) {
+        return fail(ErrorCode::InvalidArgument, "a transfer table of " + std::to_string(size.x) +
+                                                    " entries; the device takes 1 to " +
+                                                    std::to_string(caps.maxTextureSize));
+    }
+    return upload2d("transfer table", {format, GL_RGBA, type, filter, 0}, size, texels);
+}
+
+} // namespace
+
+const TexelLayout& texelLayoutOf(TexelFormat format) {
+    return kTexelLayouts[static_cast<std::size_t>(format)];
+}
+
+const TexelLayout& classifiedLayout() {
+    return kClassifiedLayout;
+}
+
+Result<gl::Texture> uploadTexels(const Texels& texels, const gl::Caps& caps) {
+    if (texels.format == TexelFormat::R16 && !caps.norm16) {
+        return fail(ErrorCode::DeviceUnsupported,
+                    "the device has no R16 textures (EXT_texture_norm16); choose R16F");
+    }
+    const auto bytes = forecastTextureBytes(texels.dims, texels.format);
+    SLABCAST_EXPECTS(!bytes || *bytes == static_cast<std::int64_t>(texels.data.size()),
+                     texels.data.size());
+    return uploadVoxels("volume texels", texelLayoutOf(texels.format), texels.dims,
+                        texels.data.data(), caps);
+}
+
+Result<gl::Texture> uploadClassified(const glm::u8vec4* texels, glm::ivec3 dims,
+                                     const gl::Caps& caps) {
+    return uploadVoxels("classified texels", kClassifiedLayout, dims, texels, caps);
+}
+
+Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, bool wide,
+                                const gl::Caps& caps) {
+    return uploadTable2d({static_cast<std::int64_t>(texels.size()), 1},
+                         wide ? GL_RGBA32F : GL_RGBA16F, GL_NEAREST, GL_FLOAT, texels.data(), caps);
+}
+
+Result<gl::Texture> uploadSquareTable(const std::vector<glm::u16vec4>& halfs,
+                                      const gl::Caps& caps) {
+    const auto edge = std::llround(std::sqrt(static_cast<double>(halfs.size())));
+    SLABCAST_EXPECTS(edge * edge == static_cast<std::int64_t>(halfs.size()), edge);
+    return uploadTable2d({edge, edge}, GL_RGBA16F, GL_LINEAR, GL_HALF_FLOAT, halfs.data(), caps);
+}
+
+} // namespace slabcast

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "core/gl/caps.h"
+#include "core/gl/texture_upload.h"
+#include "core/volume/texels.h"
+
+namespace slabcast {
+
+/// How a volume's scalars and its pre-classified colours lie in their textures.
+const TexelLayout& texelLayoutOf(TexelFormat format);
+const TexelLayout& classifiedLayout();
+
+/// Like every upload of core/gl/texture_upload.h. Fail: also VolumeTooLarge.
+
+/// Scalars: R8, R16 and R16F filtered; Rg8Exact (r high byte, g low byte) and R32fExact for
+/// texelFetch.
+Result<gl::Texture> uploadTexels(const Texels& texels, const gl::Caps& caps);
+
+/// Pre-classified texels, RGBA8, filtered. `texels` holds dims.x * dims.y * dims.z, x fastest.
+Result<gl::Texture> uploadClassified(const glm::u8vec4* texels, glm::ivec3 dims,
+                                     const gl::Caps& caps);
+
+/// A transfer table: RGBA16F, or RGBA32F where `wide`; width x 1, for texelFetch on a sampler2D.
+Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, bool wide,
+                                const gl::Caps& caps);
+
+/// A pre-integrated table: RGBA16F, as wide as high, filtered.
+Result<gl::Texture> uploadSquareTable(const std::vector<glm::u16vec4>& halfs, const gl::Caps& caps);
+
+} // namespace slabcast

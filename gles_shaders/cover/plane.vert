@@ -1,0 +1,15 @@
+// One proxy plane per instance. The unit polygon is static; where it lies comes from the outlines,
+// which are counted from the nearest plane.
+#include "segment/frame.glsl"
+
+layout(location = 0) in vec2 unitPolygon;
+flat out int plane;
+uniform ivec2 planeRun; // the first instance's place from the nearest; the step to the next
+
+void main() {
+    int fromNearest = planeRun.x + planeRun.y * gl_InstanceID;
+    plane = firstPlane + fromNearest;
+    vec4 outline = outlines[fromNearest / planesPerOutline];
+    // w = 1 and z = 0: near and far never clip a proxy polygon.
+    gl_Position = vec4(outline.xy + unitPolygon * outline.zw, 0.0, 1.0);
+}

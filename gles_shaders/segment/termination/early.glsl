@@ -1,0 +1,4 @@
+bool terminated(float alpha) {
+    return alpha > viewport.w;
+}
+#include "segment/termination/closed.glsl"

@@ -1,7 +1,0 @@
-// Counts what target_fetched.glsl does: the layer is drawn beside, plane by plane.
-#include "target_counted.glsl"
-uniform highp sampler2D layerBefore;
-
-highp float opacityBefore() {
-    return texelFetch(layerBefore, ivec2(gl_FragCoord.xy), 0).a;
-}

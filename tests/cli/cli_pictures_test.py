@@ -1,0 +1,225 @@
+#!/usr/bin/env python3
+"""Pictures, statistics and sweeps of the command line as a process.
+
+usage: cli_pictures_test.py SLABCAST [arguments of unittest]
+"""
+
+import csv
+import json
+import re
+import shlex
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
+import cli_files as files  # noqa: E402
+from cli_case import PHANTOM, QUICK, RATIO, CliTest, main  # noqa: E402
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+REPORT, DOCUMENTED = ROOT / "perf" / "pages" / "report.py", ROOT / "docs" / "reports.md"
+
+
+class Pictures(CliTest):
+    def test_png_is_of_the_size_and_shows_something(self):
+        png = files.Png(self.picture(PHANTOM, "--size", "48x32", *RATIO))
+        self.assertEqual((png.width, png.height, png.channels), (48, 32, 3))
+        self.assertEqual(png.pixel(0, 0), (0, 0, 0))
+        self.assertGreater(max(png.pixel(24, 16)), 10)
+
+    def test_exr_is_of_the_size(self):
+        self.succeeds("render", PHANTOM, "-o", "p.exr", "--size", "48x32", *RATIO)
+        header = files.exr_header((self.folder / "p.exr").read_bytes())
+        self.assertEqual(struct.unpack("<4i", header["dataWindow"]), (0, 0, 47, 31))
+
+    def test_background_comes_back_as_it_was_given(self):
+        for space in ("display", "linear"):
+            with self.subTest(space):
+                png = files.Png(self.picture(PHANTOM, *QUICK, "--background", "336699", "--space", space,
+                                             "--target", "rgba16f"))
+                for got, given in zip(png.pixel(0, 0), (0x33, 0x66, 0x99)):
+                    self.assertAlmostEqual(got, given, delta=1)  # half floats hold 11 bits
+
+    def test_without_background_there_is_alpha(self):
+        png = files.Png(self.picture(PHANTOM, *QUICK, "--background", "none"))
+        self.assertEqual(png.channels, 4)
+        self.assertEqual(png.pixel(0, 0), (0, 0, 0, 0))
+        self.assertGreater(png.pixel(16, 16)[3], 10)
+
+    def test_stereo_draws_two_eyes_side_by_side(self):
+        def halves(ipd):
+            png = files.Png(self.picture(PHANTOM, "--size", "64x32", *RATIO, "--stereo", ipd))
+            self.assertEqual((png.width, png.height), (64, 32))
+            return [[row[eye * 96:eye * 96 + 96] for row in png.rows] for eye in range(2)]
+        left, right = halves("8")
+        self.assertNotEqual(left, right)
+        self.assertTrue(any(map(any, left)) and any(map(any, right)))
+        left, right = halves("0")
+        self.assertEqual(left, right)
+
+    def test_the_same_command_draws_the_same_picture(self):
+        self.assertEqual(self.picture(PHANTOM, *QUICK), self.picture(PHANTOM, *QUICK))
+
+    def test_skipping_changes_nothing(self):
+        sparse = self.sparse()
+        self.assertEqual(self.picture(*sparse, "--skip", "none"), self.picture(*sparse, "--skip", "proximity"))
+
+    def test_the_first_of_many_frames_is_written(self):
+        one = self.picture(PHANTOM, *QUICK)
+        self.assertEqual(self.stats(PHANTOM, *QUICK, "--frames", "3")["frame_ms"]["n"], 3)
+        self.assertEqual((self.folder / "p.png").read_bytes(), one)
+
+    def test_turning_the_camera_changes_the_picture(self):
+        self.assertNotEqual(self.picture(PHANTOM, *QUICK), self.picture(PHANTOM, *QUICK, "--camera", "-30,80,2"))
+
+    def test_every_word_of_every_option_draws(self):
+        for words in ("--lattice shells --form unrolled --shade phong --classify preclassified --skip-block 8",
+                      "--exact --space linear --target rgba16f --form loop --termination off --skip proximity",
+                      "--tighten off --skip none --shade phong --termination 0.5 --fov 90 --tf linear --camera 0,90,0"):
+            with self.subTest(words):
+                png = files.Png(self.picture(PHANTOM, *QUICK, *words.split()))
+                self.assertTrue(any(map(any, png.rows)))
+
+
+class Inputs(CliTest):
+    def test_the_same_voxels_draw_the_same_from_every_format(self):
+        self.write("v.nrrd", files.nrrd())
+        self.write("packed.nrrd", files.nrrd(encoding="gzip", data=files.packed(files.ramp())))
+        self.write("v.raw", files.ramp())
+        plain = self.picture("v.nrrd", *QUICK)
+        self.assertEqual(self.picture("packed.nrrd", *QUICK), plain)
+        self.assertNotEqual(self.picture("v.raw", "--raw", "8x8x8,uint8,1x1x2", *QUICK), plain)
+        self.assertEqual(self.picture("v.raw", "--raw", "8x8x8,uint8,1x1x1", *QUICK), plain)
+
+    def test_info_tells_what_was_written(self):
+        self.write("v.nii.gz", files.packed(files.nifti(spacings=(0.5, 1.0, 2.0))))
+        text = self.succeeds("info", "v.nii.gz")
+        for expected in ("8 x 8 x 8, uint8", "0.5 x 1 x 2 mm, box 4 x 8 x 16 mm", "0 to 224", "mean 112"):
+            self.assertIn(expected, text)
+        self.assertIn("4 x 4 x 4", self.succeeds("info", "v.nii.gz", "--downsample", "2"))
+
+    def test_voxels_that_are_no_numbers_are_noted(self):
+        values = [1.0] * 60 + [float("nan"), float("inf"), float("-inf"), 2.0]
+        self.write("v.nrrd", files.nrrd("4 4 4", kind="float", data=struct.pack("<64f", *values)))
+        self.picture("v.nrrd", *QUICK, notes=r"slabcast: v.nrrd: 3 voxels are NaN or infinite[^\n]*\n")
+
+    def test_device_names_itself_and_its_formats(self):
+        text = self.succeeds("device")
+        for expected in ("driver", "3D limit", "r8 ", "r16f", "GL_OVR_multiview2"):
+            self.assertIn(expected, text)
+
+
+class Statistics(CliTest):
+    KEYS = {
+        "device": {"renderer", "vendor", "version", "software"},
+        "plan": {"planes", "layers", "layersPerPlane", "termination", "order", "planesPerMark", "variant", "reasons"},
+        "frame_ms": {"median", "min", "max", "n"},
+        "counters": {"fragments", "layers_evaluated", "layers_skipped", "volume_fetches", "skip_fetches", "stretches",
+                     "blocks_visited"},
+        "volume": {"name", "dims", "type", "spacingMm", "bytes"},
+    }
+
+    def test_keys_are_stable(self):
+        stats = self.stats(PHANTOM, *QUICK)
+        for part, keys in self.KEYS.items():
+            self.assertLessEqual(keys, set(stats[part]), part)
+        plan = stats["plan"]
+        self.assertEqual((plan["planes"], plan["layersPerPlane"], plan["layers"]), (4, 4, 16))
+        self.assertEqual(stats["volume"]["dims"], [24, 24, 24])
+        self.assertEqual(stats["volume"]["bytes"], 24 ** 3)
+        times = stats["frame_ms"]
+        self.assertTrue(0 < times["min"] <= times["median"] <= times["max"])
+
+    def test_every_key_is_documented(self):
+        known = set(re.findall(r"`([^`]+)`", DOCUMENTED.read_text(encoding="utf-8")))
+        stats = self.stats(PHANTOM, *QUICK, "--heatmap", "layers", "--verify")
+        for part in (stats, *stats.values()):
+            self.assertLessEqual(set(part) if isinstance(part, dict) else set(), known)
+
+    def test_termination_is_an_opacity_or_off(self):
+        for given, named in (("0.25", 0.25), ("off", "off")):
+            self.assertEqual(self.stats(*self.sparse(), "--termination", given)["plan"]["termination"], named)
+
+    def test_order_is_as_asked_and_saves_work_front_to_back(self):
+        dense = (*self.sparse()[:-1], "16", "--termination", "0.9")  # planes
+        orders = {order: self.stats(*dense, "--order", order) for order in ("back-to-front", "front-to-back", "auto")}
+        for order in ("back-to-front", "front-to-back"):
+            self.assertEqual(orders[order]["plan"]["order"], order)
+        counts = {order: stats["counters"]["layers_evaluated"] for order, stats in orders.items()}
+        self.assertLess(counts["front-to-back"], 0.9 * counts["back-to-front"])
+        self.assertEqual(counts["auto"], counts[orders["auto"]["plan"]["order"]])
+        self.assertEqual(self.stats(*self.sparse(), "--termination", "off")["plan"]["order"], "back-to-front")
+
+    def test_skipping_saves_work(self):
+        sparse = (*self.sparse(), "--termination", "off")
+        without = self.stats(*sparse, "--skip", "none")["counters"]
+        skipping = self.stats(*sparse, "--skip", "proximity")["counters"]
+        self.assertEqual((without["layers_skipped"], without["skip_fetches"]), (0, 0))
+        self.assertGreater(skipping["layers_skipped"], 0)
+        self.assertLess(skipping["layers_evaluated"], without["layers_evaluated"])
+
+    def test_explain_gives_reasons_and_the_measured_ratio_is_the_fastest(self):
+        text = self.succeeds("render", PHANTOM, "-o", "p.png", "--size", "64x64", "--layers", "16", "--explain")
+        for what in ("texels", "layers 16", "ratio", "skip", "classification"):
+            self.assertRegex(text, rf"(?m)^{what}.*: .+")
+        line = re.search(r"(?m)^ratio ([^:]+): fastest of those measured on this device: (.+)$", text)
+        chosen, measured = line.groups()
+        times = {name: float(ms) for name, ms in re.findall(r"(\d+x\d+ \w+) ([\d.e-]+) ms", measured)}
+        self.assertGreaterEqual(len(times), 3)
+        self.assertEqual(times[chosen], min(times.values()))
+
+
+class Sweep(CliTest):
+    LAYERS = (1, 4, 16)  # and 0: all
+
+    def test_sweep_writes_rows_and_a_page_of_its_own(self):
+        self.succeeds("sweep", "phantom:shells:32", "--size", "64x64", "--layers", "1,4,16,0", "--frames", "2",
+                      "--out", "out/sweep", notes=r"[^\n]*report\.html\n")
+        folder = self.folder / "out" / "sweep"
+        sweep = json.loads((folder / "sweep.json").read_text())
+        rows = sweep["rows"]
+        for key in ("command", "commit", "date", "device", "volume", "conditions", "memory"):
+            self.assertTrue(sweep[key], key)
+        total = sweep["conditions"]["totalLayers"]
+        for skip in ("none", "proximity"):
+            self.assertEqual({row["layersPerPlane"] for row in rows if row["skip"] == skip}, {*self.LAYERS, total})
+        for row in rows:
+            self.assertGreaterEqual(row["planes"] * row["layersPerPlane"], total)
+            self.assertEqual(row["frameMs"]["n"], 2)
+            self.assertAlmostEqual(row["frameMs"]["median"], (row["frameMs"]["min"] + row["frameMs"]["max"]) / 2)
+            self.assertIs(row["jitter"], False)
+            self.assertTrue((folder / row["thumbnail"]).is_file())
+
+        with open(folder / "sweep.csv", newline="", encoding="utf-8") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual(len(table), len(rows))
+        for line, row in zip(table, rows):
+            self.assertEqual((int(line["planes"]), int(line["layersPerPlane"]), line["skip"]),
+                             (row["planes"], row["layersPerPlane"], row["skip"]))
+            self.assertEqual(int(line["layers_evaluated"]), row["counters"]["layers_evaluated"])
+            self.assertEqual((float(line["frame_ms_median"]), line["jitter"]), (row["frameMs"]["median"], "false"))
+
+        page = folder / "report.html"
+        self.assertEqual(re.findall(r"""(?:src|href)\s*=\s*["'](?!data:|#)[^"']*""", page.read_text()), [])
+        page.unlink()
+        subprocess.run(["/usr/bin/python3", REPORT, folder], check=True, capture_output=True)
+        self.assertTrue(page.is_file())
+
+    def test_folders_of_any_name_get_their_page(self):
+        for name in ("john's scans", "$(touch x);`y`"):
+            self.succeeds("sweep", PHANTOM, "--size", "32x32", "--layers", "4", "--frames", "1", "--out", name,
+                          notes=r"[^\n]*report\.html\n")
+            self.assertTrue((self.folder / name / "report.html").is_file())
+            command = json.loads((self.folder / name / "sweep.json").read_text())["command"]
+            self.assertEqual(shlex.split(command)[-1], name)
+        self.assertFalse((self.folder / "x").exists())
+
+    def test_sweeps_that_cannot_be(self):
+        self.write("file", "kept")
+        self.fails("sweep", PHANTOM, "--out", "file/sweep", cause="file/sweep", remedy="give another")
+        self.fails("sweep", "missing.nrrd", "--out", "sweep", cause="missing.nrrd", remedy="check the path")
+
+
+if __name__ == "__main__":
+    main(__doc__)

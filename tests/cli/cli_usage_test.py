@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""The command line's own words: bad usage, and the help.
+
+usage: cli_usage_test.py SLABCAST [arguments of unittest]
+"""
+
+import re
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
+from cli_case import PHANTOM, CliTest, main  # noqa: E402
+
+COMMANDS = ("render", "sweep", "error", "stability", "skipbench", "edit", "info", "device")
+
+
+class BadUsage(CliTest):
+    def test_values_that_options_do_not_take(self):
+        bad = {
+            "--size": ("32", "0x5", "32x32x32", "99999x2"),
+            "--planes": ("-1", "many", "1.5", "99999999999999999999"), "--layers": ("0",), "--frames": ("0",),
+            "--camera": ("1,2", "nan,2,3", "1,2,inf", "1,2,-1"), "--fov": ("180", "nan"), "--stereo": ("-1", "nan"),
+            "--background": ("red", "+12345"), "--layer-spacing": ("0", "nan"), "--termination": ("0", "2", "nan"),
+            "--skip": ("octopus",), "--skip-block": ("3",), "--downsample": ("0",), "--gpu-budget": ("nan",),
+        }
+        self.all_misused([(("render", PHANTOM, "-o", "p.png", flag, word), f"{flag}: '{re.escape(word)}' is not .+")
+                          for flag, words in bad.items() for word in words])
+
+    def test_commands_that_are_incomplete_or_unknown(self):
+        self.all_misused(((("render", PHANTOM), "--output is required"),
+                          (("render", "-o", "p.png"), "VOLUME is required"),
+                          (("render", PHANTOM, "-o"), "--output"),
+                          (("render", PHANTOM, "-o", "p.png", "--colour"), "--colour"),
+                          (("sweep", PHANTOM), "--out is required"),
+                          (("sweep", PHANTOM, "--out", "d", "--layers", "1,x"), "--layers: '1,x'"),
+                          (("error", PHANTOM), "--out is required"),
+                          (("error", PHANTOM, "--out", "d", "--layer-spacing", "1,0"), "--layer-spacing: '1,0'"),
+                          (("error", PHANTOM, "--out", "d", "--classify", "post,best"), "--classify: 'post,best'"),
+                          (("error", PHANTOM, "--out", "d", "--termination", ""), "--termination"),
+                          (("render", PHANTOM, "-o", "p.png", "--target-error", "0.1", "--planes", "2"),
+                           "--planes excludes --target-error"),
+                          (("render", PHANTOM, "-o", "p.png", "--verify", "--shade", "phong"), "--verify.*shading"),
+                          (("render", PHANTOM, "-o", "p.png", "--target-error", "0.1", "--shade", "phong"),
+                           "--target-error.*shading"),
+                          (("error", PHANTOM, "--out", "d", "--shade", "phong"), "--shade"),
+                          (("error", PHANTOM, "--out", "d", "--frames", "2"), "--frames: '2'"),
+                          (("paint",), "paint"),
+                          (("info",), "VOLUME is required"),
+                          (("device", "2"), "2")))
+
+    def test_no_command_answers_with_the_help(self):
+        run = self.run_cli()
+        self.assertEqual((run.returncode, run.stdout), (2, ""))
+        for command in COMMANDS:
+            self.assertRegex(run.stderr, rf"(?m)^  {command} ")
+
+
+class Help(CliTest):
+    def test_every_command_explains_itself(self):
+        for command in COMMANDS:
+            with self.subTest(command):
+                text = self.succeeds(command, "--help")
+                self.assertIn(f"slabcast {command}", text)
+                self.assertRegex(text, r"(?m)^Example: .+\n  (\w+=\S+ )?slabcast " + command)
+                for line in text.splitlines():
+                    self.assertLessEqual(len(line), 100)
+        self.assertIn("slabcast render phantom:", self.succeeds("--help"))
+        self.assertIn("--termination", self.succeeds("--help-all"))
+
+    def test_defaults_are_shown(self):
+        text = " ".join(self.succeeds("render", "--help").split())
+        for default in ("1024x1024", "0,10,2.5", "40", "planar", "display", "auto", "rgba8", "000000"):
+            self.assertIn(f"(default: {default})", text)
+        self.assertRegex(text, r"--termination .+ \(default: 0\.99\d+\)")
+
+
+if __name__ == "__main__":
+    main(__doc__)

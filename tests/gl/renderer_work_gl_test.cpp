@@ -1,0 +1,296 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/draw/ratio_tuner.h"
+#include "core/gl/program.h"
+#include "tests/support/render_support.h"
+
+namespace slabcast::test {
+
+class RendererUpkeepTest : public RenderTest {};
+
+class CountersTest : public RenderTest {
+protected:
+    WorkCounters count(const Scene& scene, const Settings& settings, const View& view) {
+        const FramePlan plan = decide(scene, settings);
+        EXPECT_TRUE(renderer().prepare(scene, plan).has_value());
+        const ViewTarget where{view, 0, {0, 0, kSize.x, kSize.y}};
+        const Result<WorkCounters> counted = renderer().countWork(scene, plan, {&where, 1});
+        EXPECT_TRUE(counted.has_value());
+        return counted.value_or(WorkCounters{});
+    }
+    /// True where the device cannot count, after checking that it says so.
+    bool refuses(const Scene& scene, const View& view) {
+        if (caps().floatBlend) {
+            return false;
+        }
+        const FramePlan plan = decide(scene, segments(8, SegmentForm::Loop));
+        const ViewTarget where{view, 0, {0, 0, kSize.x, kSize.y}};
+        const Result<WorkCounters> counted = renderer().countWork(scene, plan, {&where, 1});
+        EXPECT_FALSE(counted.has_value());
+        EXPECT_EQ(counted.error().code, ErrorCode::DeviceUnsupported);
+        EXPECT_NE(counted.error().detail.find("GL_EXT_float_blend"), std::string::npos);
+        return true;
+    }
+};
+
+TEST_F(CountersTest, LayersAreThoseOfTheRays) {
+    const Scene scene =
+        makeScene(constantVolume({24, 24, 24}, 5), {.tf = uniformTransfer(0.1, glm::dvec3(1.0))});
+    const View view = asymmetricView(scene);
+    if (refuses(scene, view)) {
+        return;
+    }
+    for (const LatticeKind lattice : {LatticeKind::Planar, LatticeKind::Shells}) {
+        for (const SegmentCase& segment : kSegmentCases) {
+            Settings settings = segments(segment.layersPerPlane, segment.form);
+            settings.lattice = lattice;
+            const FramePlan plan = decide(scene, settings);
+            const RayFrame frame =
+                makeRayFrame(view, {0, 0, kSize.x, kSize.y}, scene.geometry(), plan.lattice);
+            std::int64_t expected = 0;
+            for (int i = 0; i < kSize.x * kSize.y; ++i) {
+                const LayerRange range = layersOf(
+                    rayAt(frame, glm::dvec2(i % kSize.x, i / kSize.x) + 0.5), plan.lattice.total);
+                expected += range.end - range.begin;
+            }
+            const WorkCounters work = count(scene, settings, view);
+            EXPECT_NEAR(double(work.layersEvaluated), double(expected), 0.005 * double(expected));
+            EXPECT_EQ(work.volumeFetches, work.layersEvaluated);
+            EXPECT_EQ(work.layersSkipped, 0);
+            EXPECT_EQ(work.skipFetches, 0);
+        }
+    }
+}
+
+// One plane is a 10-gon around the sphere's silhouette, of 10 tan(pi/10) r^2; inside the volume
+// planes cover all.
+TEST_F(CountersTest, FragmentsAreThoseOfThePolygons) {
+    const Scene scene =
+        makeScene(constantVolume({24, 24, 24}, 5), {.tf = uniformTransfer(0.1, glm::dvec3(1.0))});
+    Settings settings = segments(kAll, SegmentForm::Loop);
+    settings.tighten = false;
+    const View outside = orbitView(scene, {30.0, 10.0, 3.0}, 50.0, kSize);
+    if (refuses(scene, outside)) {
+        return;
+    }
+    const double radiusTangent = std::tan(std::asin(1.0 / 3.0));
+    const double pixelsPerTangent = kSize.y / 2.0 / outside.frustum.top;
+    const double radius = radiusTangent * pixelsPerTangent;
+    const double area = 10.0 * std::tan(0.31415926535) * radius * radius;
+    EXPECT_NEAR(double(count(scene, settings, outside).fragments), area,
+                0.01 * area); // pixels along its rim
+    settings = segments(1, SegmentForm::Loop);
+    settings.tighten = false;
+    View inside = orbitView(scene, {30.0, 10.0, 0.0}, 50.0, kSize);
+    inside.nearDepth =
+        0.9 * scene.geometry().boundingSphere().radiusMm; // cuts all but the last planes
+    const FramePlan plan = decide(scene, settings);
+    const double layers = 0.1 * scene.geometry().boundingSphere().radiusMm / plan.lattice.spacingMm;
+    const std::int64_t drawn = count(scene, settings, inside).fragments;
+    EXPECT_GE(drawn, std::int64_t(kSize.x) * kSize.y);
+    EXPECT_LE(drawn, std::int64_t(kSize.x) * kSize.y * std::int64_t(std::ceil(layers) + 1));
+}
+
+TEST_F(CountersTest, SkippingEvaluatesLessOfTheSameLayers) {
+    const Volume ball = makeVolume({32, 32, 32}, VoxelType::U8, [](glm::ivec3 v) {
+        return glm::distance(glm::dvec3(v), glm::dvec3(9.0, 15.0, 20.0)) < 5.0 ? 200.0 : 0.0;
+    });
+    const TransferFunction tf{
+        .points = {{50.0, glm::dvec3(1.0), 0.0}, {200.0, glm::dvec3(1.0), 0.5}}};
+    const Scene scene = makeScene(ball, {.tf = tf});
+    const View view = asymmetricView(scene);
+    if (refuses(scene, view)) {
+        return;
+    }
+    for (const SegmentCase& segment : kSegmentCases) {
+        Settings settings = segments(segment.layersPerPlane, segment.form);
+        settings.tighten = false;
+        const WorkCounters all = count(scene, settings, view);
+        settings.skip = SkipStructure::Proximity;
+        const WorkCounters some = count(scene, settings, view);
+        EXPECT_EQ(some.fragments, all.fragments);
+        EXPECT_EQ(some.layersEvaluated + some.layersSkipped, all.layersEvaluated);
+        EXPECT_LT(some.layersEvaluated, all.layersEvaluated / 5);
+        EXPECT_GT(some.layersEvaluated, 0);
+        EXPECT_GT(some.skipFetches, 0);
+    }
+}
+
+/// A sample of what gl::StateGuard documents.
+struct StateSample {
+    std::vector<GLint> values;
+
+    static StateSample take() {
+        StateSample sample;
+        for (const GLenum name : {GL_CURRENT_PROGRAM,
+                                  GL_VERTEX_ARRAY_BINDING,
+                                  GL_DRAW_FRAMEBUFFER_BINDING,
+                                  GL_READ_FRAMEBUFFER_BINDING,
+                                  GL_VIEWPORT,
+                                  GL_SCISSOR_BOX,
+                                  GL_BLEND_SRC_RGB,
+                                  GL_BLEND_DST_ALPHA,
+                                  GL_BLEND_EQUATION_RGB,
+                                  GL_DEPTH_WRITEMASK,
+                                  GL_ARRAY_BUFFER_BINDING,
+                                  GL_UNIFORM_BUFFER_BINDING,
+                                  GL_ACTIVE_TEXTURE,
+                                  GL_TEXTURE_BINDING_2D,
+                                  GL_TEXTURE_BINDING_3D,
+                                  GL_SAMPLER_BINDING,
+                                  GL_UNPACK_ALIGNMENT,
+                                  GL_PACK_ROW_LENGTH,
+                                  GL_COLOR_WRITEMASK,
+                                  GL_BLEND,
+                                  GL_DEPTH_TEST,
+                                  GL_CULL_FACE,
+                                  GL_SCISSOR_TEST,
+                                  GL_STENCIL_TEST,
+                                  GL_DITHER}) {
+            GLint value[4] = {};
+            gl::GetIntegerv(name, value);
+            sample.values.insert(sample.values.end(), value, value + 4);
+        }
+        return sample;
+    }
+};
+
+TEST_F(RendererUpkeepTest, RefusesAPlanForAnotherLook) {
+    const Scene scene =
+        makeScene(constantVolume({4, 4, 4}, 5), {.tf = uniformTransfer(1.0, glm::dvec3(1.0))});
+    Settings settings = segments(8, SegmentForm::Loop);
+    EXPECT_TRUE(renderer().prepare(scene, decide(scene, settings)).has_value());
+    settings.shaded = true;
+    const Result<void> lit = renderer().prepare(scene, decide(scene, settings));
+    ASSERT_FALSE(lit.has_value());
+    EXPECT_EQ(lit.error().code, ErrorCode::InvalidArgument);
+    settings.shaded = false;
+    settings.space = CompositingSpace::Linear;
+    EXPECT_FALSE(renderer().prepare(scene, decide(scene, settings)).has_value());
+    settings.space = CompositingSpace::Display;
+    settings.classification = Classification::Pre;
+    EXPECT_FALSE(renderer().prepare(scene, decide(scene, settings)).has_value());
+}
+
+TEST_F(RendererUpkeepTest, LeavesTheStateAsItWas) {
+    Random random(5);
+    const Volume volume = wavyVolume(random, {16, 16, 16}, VoxelType::U8);
+    const Scene scene = makeScene(
+        volume, {.tf = smoothTransfer(random, 255.0, 0.3), .space = CompositingSpace::Linear});
+    gl::ColorTargets target;
+    ASSERT_TRUE(target.resize(kSize.x, kSize.y, {GL_RGBA8}).has_value());
+    target.begin();
+    gl::Texture texture = gl::Texture::make("host's", GL_TEXTURE_2D);
+    gl::ActiveTexture(GL_TEXTURE2);
+    gl::BindTexture(GL_TEXTURE_2D, texture.id());
+    gl::ActiveTexture(GL_TEXTURE1);
+    gl::BindTexture(GL_TEXTURE_2D, texture.id());
+    gl::Viewport(3, 4, 50, 40);
+    gl::Scissor(5, 6, 7, 8);
+    gl::Enable(GL_SCISSOR_TEST);
+    gl::Enable(GL_DEPTH_TEST);
+    gl::BlendFunc(GL_ZERO, GL_SRC_COLOR);
+    gl::ColorMask(GL_FALSE, GL_TRUE, GL_TRUE, GL_FALSE);
+    gl::PixelStorei(GL_UNPACK_ALIGNMENT, 2);
+    const StateSample before = StateSample::take();
+    const std::vector<ViewTarget> views = {
+        {asymmetricView(scene), target.framebuffer(), {0, 0, kSize.x, kSize.y}}};
+
+    renderer().contextLost(); // so that everything is made anew
+    Settings settings = segments(8, SegmentForm::Loop);
+    settings.space = CompositingSpace::Linear; // with a layer of our own
+    settings.skip = SkipStructure::Proximity;
+    const FramePlan plan = decide(scene, settings);
+    ASSERT_TRUE(renderer().prepare(scene, plan).has_value());
+    EXPECT_EQ(StateSample::take().values, before.values) << "prepare";
+    ASSERT_TRUE(renderer().draw(scene, plan, views).has_value());
+    EXPECT_EQ(StateSample::take().values, before.values) << "draw";
+    EXPECT_EQ(renderer().countWork(scene, plan, views).has_value(), caps().floatBlend);
+    EXPECT_EQ(StateSample::take().values, before.values) << "countWork";
+
+    Settings open = segments(1, SegmentForm::Auto);
+    open.layersPerPlane.reset();
+    open.space = CompositingSpace::Linear;
+    const Result<std::vector<RatioMeasurement>> measured =
+        measureRatios(renderer(), scene, open, caps(), views);
+    EXPECT_EQ(StateSample::take().values, before.values) << "measureRatios";
+    gl::Disable(GL_SCISSOR_TEST);
+    gl::Disable(GL_DEPTH_TEST);
+    gl::ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    gl::ActiveTexture(GL_TEXTURE0);
+
+    ASSERT_TRUE(measured.has_value());
+    const std::vector<Ratio> candidates = ratioCandidates(open, scene.facts());
+    ASSERT_FALSE(measured->empty());
+    ASSERT_LE(measured->size(), candidates.size());
+    for (std::size_t i = 0; i < measured->size(); ++i) {
+        EXPECT_EQ((*measured)[i].ratio, candidates[i]);
+        EXPECT_GT((*measured)[i].frameMs, 0.0);
+    }
+    const auto best =
+        std::min_element(measured->begin(), measured->end(),
+                         [](const auto& a, const auto& b) { return a.frameMs < b.frameMs; });
+    if (measured->size() < candidates.size()) { // stopped early: only for one that had no chance
+        EXPECT_GT(measured->back().frameMs, 8.0 * best->frameMs);
+    }
+    const Result<FramePlan> chosen = slabcast::plan(scene.facts(), open, caps(), *measured);
+    ASSERT_TRUE(chosen.has_value());
+    EXPECT_EQ(chosen->layersPerPlane, best->ratio.layersPerPlane);
+    EXPECT_EQ(chosen->planes, best->ratio.planes);
+}
+
+/// Names of a program's samplers, as the driver reports them.
+std::vector<std::string> samplersOf(const ShaderVariant& variant) {
+    const Result<ShaderPair> text = shaderText(variant);
+    EXPECT_TRUE(text.has_value());
+    const Result<gl::Program> program =
+        gl::buildProgram(name(variant), text->vertex, text->fragment);
+    EXPECT_TRUE(program.has_value()) << (program ? "" : program.error().detail);
+    return gl::activeResources(*program).samplers;
+}
+
+std::size_t occurrences(const std::string& text, const std::string& word) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+        ++count;
+    }
+    return count;
+}
+
+TEST_F(RendererUpkeepTest, WhatIsOffIsAbsentFromTheProgram) {
+    const ShaderVariant plain{.unroll = 4};
+    ShaderVariant skipping = plain;
+    skipping.skip = SkipForm::Balls;
+    ShaderVariant baked = plain;
+    baked.classification = Classification::Pre;
+    const std::vector<std::string> scalars = {"transferTable", "volumeTexels"};
+    const std::vector<std::string> all = {"skipTexels", "transferTable", "volumeTexels"};
+    EXPECT_EQ(samplersOf(plain), scalars);
+    EXPECT_EQ(samplersOf(skipping), all);
+    EXPECT_EQ(samplersOf(baked), std::vector<std::string>{"volumeTexels"});
+
+    // What has no resource of its own leaves its words: each is there where its bit is set and
+    // nowhere else.
+    const struct {
+        const char* word;
+        bool (*on)(const ShaderVariant&);
+    } words[] = {
+        {"texelFetch(skipTexels", [](const ShaderVariant& v) { return v.skip != SkipForm::None; }},
+        {"smoothstep(", [](const ShaderVariant& v) { return v.shaded; }},
+        {"texelFetch(volumeTexels", [](const ShaderVariant& v) { return v.exactField; }},
+        {"> viewport.w", [](const ShaderVariant& v) { return v.terminates; }},
+        {"while (", [](const ShaderVariant& v) { return v.unroll == 0; }},
+        {"work1", [](const ShaderVariant& v) { return v.counts; }},
+    };
+    for (const ShaderVariant& variant : allVariants()) {
+        const Result<ShaderPair> text = shaderText(variant);
+        ASSERT_TRUE(text.has_value());
+        for (const auto& entry : words) {
+            EXPECT_EQ(occurrences(text->fragment, entry.word) > 0, entry.on(variant))
+                << name(variant) << ": " << entry.word;
+        }
+    }
+}
+
+} // namespace slabcast::test

@@ -1,0 +1,249 @@
+#!/usr/bin/python3
+"""perf/pages/skipbench_report.py from a made-up comparison: what the page says, what it refuses, what it survives.
+
+With a folder as its argument, writes the made-up comparison and its page there, to look at.
+"""
+
+import json
+import re
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+from types import SimpleNamespace
+
+from report_test import external
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
+from report_pages import ReportTest  # noqa: E402
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "perf" / "pages"))
+import skipbench_plots  # noqa: E402
+
+REPORT = Path(__file__).resolve().parent.parent.parent / "perf" / "pages" / "skipbench_report.py"
+SPEEDUPS = {"none": 1.0, "blocks": 1.6, "proximity": 2.9, "chebyshev": 3.1, "partitioned": 3.0,
+            "boolean-octree": 2.2, "minmax-octree": 1.3, "bitfield-octree": 2.1}
+MODES = {"marching only": 40.0, "early exit": 25.0, "shading": 90.0}
+TRANSFERS = {"TF1": "all but the minimum", "TF2": "all", "TF5": "CT <bone>"}
+PARTITIONS = (16, 64, 256)
+NO_COMPUTE = "this device offers 4 storage blocks, <16> are needed"
+REFUSED = "256 partitions take 1.7 GiB, more than the budget of 256 MiB"
+
+
+def times(median):
+    return {"median": median, "min": 0.9 * median, "max": 1.2 * median, "p10": median, "p90": median, "n": 5}
+
+
+def parameters(structure):
+    row = {"structure": structure}
+    if structure != "none":
+        row["blockEdge"] = 4
+    if structure == "bitfield-octree":
+        row["bits"] = 32
+    if structure == "partitioned":
+        row["partitions"] = 64
+    if structure.endswith("octree"):
+        row.update({"initialLevel": 3, "traversal": "bidirectional"})
+    return row
+
+
+def counters(structure):
+    return {"fragments": 15_000, "layers_evaluated": round(1.4e6 / SPEEDUPS[structure]), "layers_skipped": 10,
+            "volume_fetches": round(1.4e6 / SPEEDUPS[structure]), "skip_fetches": 2_500_000, "stretches": 180_000,
+            "blocks_visited": 82_000}
+
+
+def frames(volume):
+    rows = []
+    for family, modes in (("ray casting", MODES), ("hybrid", ("marching only", "early exit")),
+                          ("slicing", ("marching only",))):
+        for mode in modes:
+            for structure, speedup in SPEEDUPS.items():
+                for tight in (False, True) if family != "ray casting" and structure != "none" else (False,):
+                    ms = MODES[mode] / speedup / (1.4 if tight else 1)
+                    finer = {"blockEdge": 2} if structure == "chebyshev" and mode == "early exit" else {}
+                    rows.append({"table": "frames", "volume": volume, "family": family, "mode": mode,
+                                 **parameters(structure), **finer, "planes": 7, "layersPerPlane": 64, "tighten": tight,
+                                 "order": "back-to-front", "frameMs": times(ms), "samples": [ms] * 5,
+                                 "speedup": MODES[mode] / ms, "counters": counters(structure)})
+    return rows
+
+
+def searched(volume):
+    return [{"table": "search", "volume": volume, **parameters(structure), "blockEdge": edge, "initialLevel": level,
+             **({"bits": bits} if bits else {}), "traversal": way, "ms": 4 + edge / 4 + level / 3 + (way == "top-down")}
+            for structure in ("boolean-octree", "bitfield-octree") for edge in (2, 4, 8) for level in (0, 3)
+            for way in ("bidirectional", "top-down") for bits in ((8, 32) if structure[1] == "i" else (None,))]
+
+
+def built(volume, table="structures", **more):
+    return [{"table": table, "volume": volume, **parameters(structure), "buildMs": times(12.0),
+             **({"gpuBuildMs": None, "gpuRefused": NO_COMPUTE} if structure == "partitioned" else
+                {"gpuBuildMs": times(7.5)}),
+             "updateMs": times(0.4) if structure.startswith(("min", "bit")) else None, "gpuBytes": 1_200_000,
+             "hostBytes": 7_000_000 if structure == "partitioned" else 0, "occupiedFraction": 0.22, **more}
+            for structure in SPEEDUPS if structure != "none"]
+
+
+def merging(volume):
+    rows = []
+    for edge in (4, 1):
+        for count in PARTITIONS:
+            refused = {"refused": REFUSED} if edge == 1 and count > 16 else {
+                "initMs": 3.0 * count, "gpuBytes": 1000, "hostBytes": 110_592 * count}
+            rows.append({"table": "partitions", "volume": volume, "structure": "partitioned", "blockEdge": edge,
+                         "partitions": count, **refused})
+        for tf, name in TRANSFERS.items():
+            named = {"volume": volume, "blockEdge": edge, "tf": tf, "tfName": name}
+            rows += [{"table": "rebuild", "structure": structure, "buildMs": times(9.0), "ofRangesMs": times(1.0),
+                      **named} for structure in ("chebyshev", "proximity")]
+            rows += [{"table": "merge", "structure": "partitioned", "partitions": count, "updateMs": times(count / 64),
+                      "speedup": 9 * 64 / count, **named} for count in PARTITIONS if edge == 4 or count == 16]
+    return rows
+
+
+def figure(name, volume, value, goal, sense=">="):
+    reached = None if value is None or goal is None else value >= goal if sense == ">=" else value <= goal
+    return {"name": name, "volume": volume, "value": value, "goal": goal, "sense": sense, "reached": reached,
+            "from": "of these rows"}
+
+
+def compared():
+    skull = "skull & co"
+    rows = (frames(skull) + searched(skull) + built(skull) + merging(skull)
+            + [{"table": "work", "volume": skull, **parameters(s), "counters": counters(s)} for s in SPEEDUPS]
+            + [row for edge in (64, 256) for row in built(skull, "sizes", edge=edge, frameMs=times(edge / 8))]
+            + frames("gap"))
+    lungs = [12.05, 5.98, 7.32, 15.59, 7.91]
+    columns = ["none", "distance map", "boolean-octree", "minmax-octree", "bitfield-octree"]
+    return {
+        "command": "slabcast skipbench skull.nrrd phantom:gap --out bench", "commit": "abc1234", "date": "2026-01-02",
+        "device": {"vendor": "Maker", "renderer": "Test <GPU>", "version": "OpenGL ES 3.2", "software": True},
+        "conditions": {"size": [256, 256], "camera": [0, 10, 2.5], "fovDegrees": 40, "layerSpacingVoxels": 1.0,
+                       "lattice": "planar", "target": "rgba8", "space": "display", "termination": 0.9961,
+                       "framesPerRowAtMost": 5, "partitionBudgetBytes": 2 ** 28, "quick": True},
+        "volumes": [{"name": skull, "dims": [256, 256, 108], "type": "int16", "transferFunction": "CT <bone>",
+                     "texelBytes": 14155776, "codesMs": 17.0},
+                    {"name": "gap", "dims": [128] * 3, "type": "uint16", "transferFunction": "Gap"}],
+        "figures": [figure("distance map against none", skull, 3.1, 2.0),
+                    figure("bitfield octree of 256^3, build", skull, 61.0, 60.0, "<="),
+                    figure("distance map against none", "gap", 3.1, None),
+                    figure("merging at edge 1", skull, None, 10.0)],
+        "papers": {"faludi": {"source": "Someone 2021, table 1", "device": "a GPU",
+                              "structures": columns,
+                              "datasets": [{"name": "Lungs", **{mode: lungs for mode in MODES},
+                                            "generation": [59.2, 7.7, 7.1, 7.0]}]},
+                   "rauter": {"source": "Someone 2024, table 1", "device": "another",
+                              "partitions": [16, 32, 64, 128, 256],
+                              "datasets": [{"name": "manix", "update": [[3.5, 0.2, 0.27, 0.42, 0.69, 1.3]] * 6}]}},
+        "rows": rows, "summary": {"judged": 2, "reached": 1, "volumes": {}}}
+
+
+def write(folder, data):
+    (folder / "skipbench.json").write_text(json.dumps(data))
+
+
+class SkipbenchReportTest(ReportTest):
+    report = REPORT
+    data = "skipbench.json"
+
+    full = ""  # the page of all that is compared, made once
+
+    def setUp(self):
+        super().setUp()
+        if not self.full:
+            type(self).full = self.page(compared())
+            for path in self.folder.iterdir():
+                path.unlink()
+
+    def page(self, data):
+        write(self.folder, data)
+        result = subprocess.run([REPORT, self.folder], capture_output=True, text=True, check=False)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["report.html", "skipbench.json"])
+        return (self.folder / "report.html").read_text()
+
+    def test_all_parts_are_there_and_nothing_outside(self):
+        text = self.full
+        self.assertEqual(external(text), [])
+        for title in ("Figures to reach", "ray casting", "work at equal parameters", "hybrid and slicing",
+                      "building and memory", "which parameters", "a new transfer function", "Cost against size",
+                      "This run"):
+            self.assertTrue(re.search(rf"<h2>[^<]*{title}", text), title)
+        # wide and narrow: speeds and families of two volumes; merging and sizes of one
+        self.assertEqual(len(re.findall(r'<figure><div class="wide"><svg', text)), 6)
+
+    def test_names_are_escaped(self):
+        text = self.full
+        for raw in ("<GPU>", "CT <bone>", "skull & co"):
+            self.assertFalse(raw in text, raw)
+        self.assertTrue("skull &amp; co: ray casting" in text)
+
+    def test_figures_say_whether_they_are_reached(self):
+        text = self.full
+        self.assertTrue("1 of 2" in text)
+        goals = text[text.index("Figures to reach"):text.index("ray casting</h2>")]
+        self.assertIn("256³", goals)
+        self.assertEqual(goals.count("<b class=fail>no</b>"), 1)
+        self.assertIn("1 figure without a goal", goals)
+
+    def test_the_papers_ratios_stand_beside(self):
+        text = self.full
+        for ratio in (12.05 / 5.98, 12.05 / 7.32, 12.05 / 15.59, 12.05 / 7.91):
+            self.assertEqual(text.count(f"<td>{ratio:.2f}</td>") % 3, 0)  # in each mode
+            self.assertTrue(f"<td>{ratio:.2f}</td>" in text, ratio)
+        for words in (f"{3.5 / 0.2:.1f}×", "Someone 2021, table 1", "Someone 2024, table 1"):
+            self.assertTrue(words in text, words)
+
+    def test_a_refusal_is_shown_with_its_reason(self):
+        text = self.full
+        self.assertEqual(text.count(REFUSED), 2)
+
+    def test_parameters_of_early_exit_are_named_where_they_are_others(self):
+        casting = self.full[self.full.index("ray casting</h2>"):self.full.index("work at equal parameters</h2>")]
+        self.assertEqual(re.findall(r"early exit: [^<]*", casting), ["early exit: 2³"])
+
+    def test_builds_on_either_side_with_their_spread(self):
+        text = self.full
+        builds = text[text.index("building and memory</h2>"):text.index("which parameters</h2>")]
+        self.assertEqual(builds.count("<td>7.5<br><i>6.75 – 9</i></td>"), len(SPEEDUPS) - 2)
+        self.assertEqual(builds.count("<td>12<br><i>10.8 – 14.4</i></td>"), len(SPEEDUPS) - 1)
+        self.assertEqual(builds.count(NO_COMPUTE.replace("<", "&lt;").replace(">", "&gt;")), 1)
+
+    def test_bars_start_at_what_none_takes(self):
+        """Also those of what is slower, which lie to the line's other side."""
+        bars = []
+        axes = SimpleNamespace(barh=lambda place, width, left, **_: bars.append((left, left + width)))
+        for speedup in (0.8, 1.0, 3.0):
+            skipbench_plots._bar(axes, 0, speedup)
+        self.assertEqual(bars, [(1, 0.8), (1, 1.0), (1, 3.0)])
+
+    def test_lives_without_what_was_not_measured(self):
+        data = compared()
+        data["rows"] = [row for row in data["rows"] if row["table"] == "frames" and row["family"] == "ray casting"]
+        for name in ("figures", "papers", "conditions"):
+            del data[name]
+        for row in data["rows"]:
+            row["counters"] = None
+        text = self.page(data)
+        for title in ("Figures to reach", "a new transfer function", "Cost against size", "which parameters"):
+            self.assertFalse(re.search(rf"<h2>[^<]*{title}", text), title)
+
+    def test_refuses_bad_input_in_one_line(self):
+        self.refusal("no such file")
+        self.refusal("not JSON", "{")
+        self.refusal("no rows", {"rows": []})
+        data = compared()
+        data["rows"][3]["frameMs"]["median"] = None
+        self.refusal("rows[3].frameMs.median", data)
+        data = compared()
+        del data["rows"][2]["volume"]
+        self.refusal("rows[2].volume", data)
+        self.refusal("no rows of frames", {"rows": [{"table": "work", "volume": "skull"}]})
+
+
+if __name__ == "__main__":
+    if len(sys.argv) == 2 and Path(sys.argv[1]).is_dir():
+        write(Path(sys.argv[1]), compared())
+        sys.exit(subprocess.run([REPORT, sys.argv[1]], check=False).returncode)
+    unittest.main()

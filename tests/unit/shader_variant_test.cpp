@@ -1,0 +1,212 @@
+#include "core/plan/shader_variant.h"
+
+#include <functional>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+namespace slabcast {
+namespace {
+
+std::vector<std::string> linesOf(const std::string& text) {
+    std::istringstream stream(text);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(stream, line);) {
+        lines.push_back(line);
+    }
+    return lines;
+}
+
+std::string withoutComments(const std::string& text) {
+    std::string code;
+    for (const std::string& line : linesOf(text)) {
+        code += line.substr(0, line.find("//")) + "\n";
+    }
+    return code;
+}
+
+std::size_t count(const std::string& text, const std::string& what) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) {
+        ++found;
+    }
+    return found;
+}
+
+TEST(ShaderVariant, ValidOnesAreAsManyAsTheTableSays) {
+    // 11 forms (10 lengths and the loop), 6 of skipping, 3 of termination (none, within segments,
+    // across planes), counts; post also has shaded and exactField, pre-integrated exactField.
+    // Rounded to fp16: the loop that draws.
+    const std::size_t looks = 4 + 1 + 2;
+    const std::size_t expected = 11 * (6 * 3 * 2) * looks + (6 * 3) * looks;
+    const std::vector<ShaderVariant> variants = allVariants();
+    EXPECT_EQ(variants.size(), expected);
+    EXPECT_EQ(std::set<ShaderVariant>(variants.begin(), variants.end()).size(), expected);
+    std::set<std::string> names;
+    for (const ShaderVariant& v : variants) {
+        EXPECT_TRUE(v.valid()) << name(v);
+        names.insert(name(v));
+    }
+    EXPECT_EQ(names.size(), expected);
+}
+
+TEST(ShaderVariant, ValidityKnowsLengthsAndBakedTexels) {
+    for (int unroll = -1; unroll <= 100; ++unroll) {
+        const std::set<int> lengths = {0, 1, 2, 4, 8, 12, 16, 24, 32, 48, 64};
+        EXPECT_EQ((ShaderVariant{.unroll = unroll}.valid()), lengths.count(unroll) == 1) << unroll;
+    }
+    EXPECT_FALSE((ShaderVariant{.classification = Classification::Pre, .shaded = true}.valid()));
+    EXPECT_FALSE(
+        (ShaderVariant{.classification = Classification::Pre, .exactField = true}.valid()));
+    EXPECT_TRUE((ShaderVariant{.classification = Classification::Pre, .counts = true}.valid()));
+    EXPECT_FALSE((ShaderVariant{.fetchesTarget = true}.valid()));
+    constexpr auto kPreintegrated = Classification::Preintegrated;
+    EXPECT_FALSE((ShaderVariant{.classification = kPreintegrated, .shaded = true}.valid()));
+    EXPECT_TRUE((ShaderVariant{.classification = kPreintegrated, .exactField = true}.valid()));
+}
+
+TEST(ShaderVariant, NamesAreAsDocumented) {
+    EXPECT_EQ(name(ShaderVariant{
+                  .skip = SkipForm::Balls, .shaded = true, .terminates = true, .unroll = 16}),
+              "post+balls+shaded+terminate/unroll16");
+    EXPECT_EQ(name(ShaderVariant{.terminates = true, .fetchesTarget = true}),
+              "post+terminate+fetch/loop");
+    EXPECT_EQ(name(ShaderVariant{}), "post/loop");
+}
+
+TEST(ShaderVariant, TheShortestLengthThatHoldsASegment) {
+    const std::pair<int, int> cases[] = {{1, 1},   {2, 2},   {3, 4},   {8, 8},   {9, 12},
+                                         {13, 16}, {17, 24}, {25, 32}, {33, 48}, {49, 64},
+                                         {64, 64}, {65, 0},  {444, 0}};
+    for (const auto& [layers, length] : cases) {
+        EXPECT_EQ(unrollLengthFor(layers), length) << layers;
+    }
+}
+
+TEST(ShaderVariant, WhatIsOffIsAbsentFromTheText) {
+    using V = ShaderVariant;
+    const auto post = [](const V& v) { return v.classification == Classification::Post; };
+    const auto never = [](const V&) { return false; };
+    const struct {
+        const char* token;
+        std::function<bool(const V&)> present;
+    } rules[] = {
+        {"usampler3D skipTexels;", [](const V& v) { return v.skip != SkipForm::None; }},
+        {"texelFetch(skipTexels", [](const V& v) { return v.skip != SkipForm::None; }},
+        {"sampler2D transferTable;",
+         [](const V& v) { return v.classification != Classification::Pre; }},
+        {"texelFetch(transferTable", post},
+        {"textureLod(transferTable",
+         [](const V& v) { return v.classification == Classification::Preintegrated; }},
+        {"texelFetch(volumeTexels", [](const V& v) { return v.exactField; }},
+        {"textureLod(volumeTexels", [](const V& v) { return !v.exactField; }},
+        {"gradientRow[0].", [](const V& v) { return v.shaded; }},
+        {"material.z * pow(", [](const V& v) { return v.shaded; }},
+        {"pow(", [](const V& v) { return v.shaded; }},
+        {"halved", [](const V& v) { return v.halfGroups != 0; }},
+        {"viewport.w", [](const V& v) { return v.terminates; }},
+        {"out highp vec4 colour;", [](const V& v) { return !v.counts; }},
+        {"out highp vec4 work1;", [](const V& v) { return v.counts; }},
+        {"inout highp vec4 colour;", [](const V& v) { return v.fetchesTarget && !v.counts; }},
+        {"#extension", [](const V& v) { return v.fetchesTarget && !v.counts; }},
+        {"sampler2D layerBefore;", [](const V& v) { return v.fetchesTarget && v.counts; }},
+        {"opacityBefore()", [](const V& v) { return v.fetchesTarget; }},
+        {"counted", [](const V& v) { return v.counts; }},
+        {"discard", never},
+        {"#include", never},
+    };
+    for (const V& v : allVariants()) {
+        const std::string text = withoutComments(shaderText(v).value().fragment);
+        for (const auto& rule : rules) {
+            EXPECT_EQ(count(text, rule.token) > 0, rule.present(v))
+                << name(v) << ": " << rule.token;
+        }
+        const std::size_t loops =
+            count(text, "while (") + count(text, "for (") + count(text, "do {");
+        EXPECT_EQ(loops > 0, v.unroll == 0) << name(v);
+    }
+}
+
+TEST(ShaderVariant, UnrolledTextsWriteOutTheirLengthOfLayers) {
+    for (const int length : kUnrollLengths) {
+        const std::string text = withoutComments(shaderText({.unroll = length}).value().fragment);
+        EXPECT_EQ(count(text, "X("), static_cast<std::size_t>(length)) << length;
+        for (int layer = 0; layer < length; ++layer) {
+            EXPECT_EQ(count(text, "X(" + std::to_string(layer) + ") "), 1U);
+        }
+    }
+    EXPECT_EQ(count(shaderText({}).value().fragment, "REPEAT_LAYERS"), 0U);
+}
+
+/// Follows the #line directives: every line must be that of the file and number which the driver
+/// will name.
+void expectLinesOfTheirFiles(const std::string& text, const std::string& what) {
+    std::vector<std::vector<std::string>> files;
+    for (const auto& [file, content] : shaderTexts()) {
+        files.push_back(linesOf(content));
+    }
+    const std::regex directive("#line (\\d+) (\\d+)");
+    std::size_t file = files.size(); // none yet: the version and the defines
+    std::size_t line = 0;
+    std::size_t checked = 0;
+    for (const std::string& shown : linesOf(text)) {
+        std::smatch match;
+        if (std::regex_match(shown, match, directive)) {
+            line = std::stoul(match[1]);
+            file = std::stoul(match[2]);
+            ASSERT_LT(file, files.size()) << what;
+        } else if (file < files.size()) {
+            ASSERT_LE(line, files[file].size()) << what;
+            EXPECT_EQ(shown, files[file][line - 1]) << what;
+            ++line;
+            ++checked;
+        }
+    }
+    EXPECT_GT(checked, 10U) << what;
+}
+
+TEST(ShaderText, MessagesNameTheFileAndLineOfTheSource) {
+    for (const ShaderVariant& v : allVariants()) {
+        if (v.unroll == 0 || v.unroll == 4) {
+            const ShaderPair pair = shaderText(v).value();
+            expectLinesOfTheirFiles(pair.vertex, name(v));
+            expectLinesOfTheirFiles(pair.fragment, name(v));
+        }
+    }
+}
+
+TEST(ShaderText, StartsWithItsVersionThenItsDefines) {
+    const std::string text =
+        expandShader("pass/fullscreen.vert", {{"SIZE", "3"}, {"SOME_FILE", "segment/ray.glsl"}})
+            .value();
+    EXPECT_EQ(text.rfind("#version 320 es\n#define SIZE 3\n#line 1 ", 0), 0U);
+    EXPECT_EQ(text.find("SOME_FILE"), std::string::npos); // a choice of file is no GLSL
+}
+
+TEST(ShaderText, IncludesAFileOnce) {
+    const std::string text = shaderText({.shaded = true}).value().fragment;
+    EXPECT_EQ(count(text, "uniform FrameBlock"), 1U);
+    EXPECT_EQ(count(text, "uniform sampler3D volumeTexels"), 1U);
+    EXPECT_EQ(count(text, "void main()"), 1U);
+}
+
+TEST(ShaderText, AFileThatIsNotThereIsAnErrorThatNamesIt) {
+    const Result<std::string> file = expandShader("absent.frag", {});
+    ASSERT_FALSE(file);
+    EXPECT_EQ(file.error().code, ErrorCode::ShaderCompile);
+    EXPECT_NE(file.error().detail.find("absent.frag"), std::string::npos);
+    // Through an include whose define is missing, and through one that names nothing.
+    for (const std::map<std::string, std::string>& defines :
+         {std::map<std::string, std::string>{}, {{"TARGET_FILE", "absent.glsl"}}}) {
+        const Result<std::string> inner = expandShader("segment/segment.frag", defines);
+        ASSERT_FALSE(inner);
+        EXPECT_EQ(inner.error().code, ErrorCode::ShaderCompile);
+        EXPECT_NE(inner.error().detail.find(defines.empty() ? "TARGET_FILE" : "absent.glsl"),
+                  std::string::npos);
+    }
+}
+
+} // namespace
+} // namespace slabcast
