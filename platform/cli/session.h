@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/draw/renderer.h"
+#include "core/scene/memory_forecast.h"
 #include "core/scene/scene.h"
 #include "core/scene/texel_format.h"
 #include "platform/egl/egl_context.h"

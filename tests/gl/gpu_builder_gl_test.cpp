@@ -1,3 +1,4 @@
+#include "core/scene/volume_texture.h"
 #include "core/skip/gpu/gpu_builder.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+#include "core/scene/memory_forecast.h"
 #include "core/scene/texel_format.h"
 
 #include <cmath>
