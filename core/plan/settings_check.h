@@ -3,10 +3,9 @@
 #include <string>
 
 #include "core/plan/frame_plan.h"
+#include "core/plan/settings.h"
 
 namespace slabcast {
-
-inline constexpr int kMaxTotalLayers = 1 << 20;
 
 /// Three significant digits, as reasons and refusals say it.
 std::string shortNumber(double value);

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/plan/shader_variant.h"
+#include "core/transfer/transfer_function.h"
+#include "core/view/lattice.h"
+
+namespace slabcast {
+
+inline constexpr int kMaxTotalLayers = 1 << 20;
+
+/// What planes are blended into.
+enum class TargetFormat : std::uint8_t { Rgba8, Rgba16f };
+enum class SegmentForm : std::uint8_t { Auto, Unrolled, Loop };
+/// Planes over what is there, or nearest first under what is gathered, in a layer of our own.
+enum class BlendOrder : std::uint8_t { BackToFront, FrontToBack };
+
+const char* name(TargetFormat format);
+const char* name(BlendOrder order);
+
+/// What a user may ask for. Unset optionals are decided by the plan.
+struct Settings {
+    Classification classification = Classification::Post;
+    std::optional<SkipStructure> skip;
+    LatticeKind lattice = LatticeKind::Planar;
+    bool jitter = false;             // moves every ray's layers by up to half a layer
+    double layerSpacingVoxels = 1.0; // of the smallest voxel edge
+    std::optional<int> totalLayers;  // instead of the spacing
+    std::optional<int> planes;       // at most one of planes and layersPerPlane
+    std::optional<int> layersPerPlane;
+    SegmentForm form = SegmentForm::Auto;
+    bool tighten = true;
+    TargetFormat target = TargetFormat::Rgba8;
+    CompositingSpace space = CompositingSpace::Display;
+    bool shaded = false;
+    std::optional<BlendOrder> order;
+    /// Opacity at which a segment is left and, front to back, a pixel: what is lost behind is at
+    /// most one 8-bit step.
+    std::optional<double> termination = 1.0 - 1.0 / 256.0;
+};
+
+} // namespace slabcast
