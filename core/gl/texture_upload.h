@@ -9,10 +9,11 @@
 
 namespace slabcast {
 
-/// The uploads below leave the GL state as they found it, go slab by slab, clamp to the edge and
-/// have one level. To know their own errors they lower every error flag that was up before: a host
-/// that wants to hear of its own calls glGetError first. Fail: DeviceOutOfMemory, Internal (another
-/// GL error). Tested by: texel_format_gl_test.cpp
+/// The uploads below restore the GL state. The textures have one level and clamp to the edge; 3D
+/// texels are uploaded in parts of 16 MiB, which bounds the driver's staging memory. GL errors that
+/// were raised before and not read are lost: a host that wants to know of its own must call
+/// glGetError before. Fail: DeviceOutOfMemory, Internal (another GL error).
+/// Tested by: texel_format_gl_test.cpp
 
 /// How texels lie in a texture and in memory.
 struct TexelLayout {
@@ -32,11 +33,11 @@ struct Slices {
     int first = 0;
 };
 
-/// Puts `texels`, tightly packed, into slices of a texture of this layout.
+/// Uploads `texels`, tightly packed, to slices of a texture that was allocated with this layout.
 Result<void> fillSlices(const char* label, const gl::Texture& texture, const TexelLayout& layout,
                         const Slices& slices, const void* texels);
 
-/// Both.
+/// allocate3d() and fillSlices() in one.
 Result<gl::Texture> upload3d(const char* label, const TexelLayout& layout, glm::ivec3 dims,
                              const void* texels);
 
@@ -44,7 +45,8 @@ Result<gl::Texture> upload3d(const char* label, const TexelLayout& layout, glm::
 Result<gl::Texture> upload2d(const char* label, const TexelLayout& layout, glm::ivec2 size,
                              const void* texels);
 
-/// What the last uploads raised. Fails: DeviceOutOfMemory, Internal.
+/// Reads the GL error flags; `what` names the upload in the error. Fails: DeviceOutOfMemory,
+/// Internal.
 Result<void> takeUploadError(const std::string& what);
 
 } // namespace slabcast

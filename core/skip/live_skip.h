@@ -9,7 +9,7 @@
 
 namespace slabcast {
 
-/// What a copy of its owner begins without.
+/// A pointer that is not copied with its owner: the copy holds null.
 template <class T>
 struct NotCopied : std::unique_ptr<T> {
     NotCopied() = default;
@@ -22,17 +22,19 @@ struct NotCopied : std::unique_ptr<T> {
 
 /// How empty space is skipped while a TF is edited.
 struct LiveOptions {
-    /// Right under any TF at once: an octree of bits or ranges, or partitioned maps.
+    /// The structure that serves while the TF changes. It is built once and is exact under any TF:
+    /// a bitfield octree, a min-max octree, or partitioned maps.
     SkipOptions always{.structure = SkipStructure::BitfieldOctree};
-    /// Faster, and for one TF: proximity, chebyshev or blocks. None: never built.
+    /// The structure that serves once the TF rests. It skips more, but is exact under the one TF
+    /// that it was built for: proximity, chebyshev or blocks. None: the first one always serves.
     SkipOptions settled{.structure = SkipStructure::Proximity};
-    /// Calls of work() after an edit that do nothing. A hand that drags edits in every frame or
-    /// two: what is begun in between is thrown away. After three it has come to rest, for 50 ms at
-    /// 60 Hz, and what one waits for then is the rebuilding.
+    /// Rebuilding begins after so many calls of work() without an edit. While a TF is dragged, an
+    /// edit comes in every frame or two, and what was begun in between would be thrown away. Three
+    /// frames without one, 50 ms at 60 Hz, mean that the hand rests.
     int quietFrames = 3;
 };
 
-/// What structures are built from: immutable, shared with whoever made it.
+/// The data that both structures are built from. It does not change and is shared with the scene.
 struct LiveSource {
     std::shared_ptr<const TexelCodes> codes;
     std::shared_ptr<const Texels> texels; // scale and bias
@@ -40,53 +42,55 @@ struct LiveSource {
 };
 
 enum class LiveProgress : std::uint8_t {
-    Settled,  // nothing to do: the structure is the TF's own
-    Waiting,  // for the hand to come to rest, or for a budget
-    Building, // the settled structure is in the making
-    Incoming, // it is finished, and its texture is being filled
+    Settled,  // nothing to do: the settled structure serves and fits the TF
+    Waiting,  // the last edit was too few frames ago, or the budget is 0
+    Building, // the settled structure is being rebuilt
+    Incoming, // it is rebuilt; its texture is being uploaded, a share a frame
     Swapped,  // it serves from this call on
 };
 
 const char* name(LiveProgress progress);
 
-/// Of a finished structure's texture, for one frame to upload.
+/// Bytes of a rebuilt structure's texture that one frame uploads.
 constexpr std::int64_t kUploadBytesPerFrame = 1 << 20;
 
-/// Which structure serves while a TF changes again and again. At any moment current() is exact
-/// under the last TF: the settled structure where the TF shows nothing that it was not built for,
-/// nor so much less that the other skips more, else the one that is right under any TF. The settled
-/// one is then rebuilt in pieces. What is in the making is dropped by a further edit, where it
-/// shows other values, and by copying. No GL. Not thread-safe; heavy steps use all cores inside.
+/// Chooses the skip structure while a TF is edited. current() is exact under the last TF at any
+/// moment. It is the settled structure as long as that is still exact, which is where the TF shows
+/// no value that it was not built for, and as long as it skips more than the other. Otherwise it is
+/// the structure that is exact under any TF; work() then rebuilds the settled one in pieces. A
+/// further edit that shows other values drops an unfinished rebuilding; so does copying. No GL. Not
+/// thread-safe; heavy steps use all cores inside.
 /// Tested by: live_skip_test.cpp
 class LiveSkip {
 public:
-    /// Builds the structure for all TFs, unless it is `present`; takes `present`, which is right
-    /// under the TF of now, as the settled one where its options are. Cost: O(voxels).
+    /// Builds the structure that is exact under any TF. `present` is the structure that the scene
+    /// has under its TF; it is taken over instead of building where its options are those of
+    /// either structure. Cost: O(voxels).
     /// Fails: InvalidArgument (structures that cannot serve so), and as buildSkip().
     static Result<LiveSkip> start(LiveSource source, const LiveOptions& options,
                                   CellVisibility visibility, const BuiltSkip& present);
 
-    /// Another TF, by what it shows of the source's codes. Cost: O(codes); where maps are merged,
-    /// O(blocks x partitions).
+    /// Takes another TF, given as the codes that it makes visible. Cost: O(codes), and O(blocks x
+    /// partitions) where partitioned maps are merged.
     void edit(CellVisibility visibility);
 
-    /// Once a frame: rebuilds for about `budgetMs`, but one item at least, which is a slice of
-    /// blocks; nothing at 0. What is finished serves once there were frames enough to upload it.
+    /// To be called once a frame. Rebuilds for about `budgetMs`: at least one slice of blocks,
+    /// nothing at 0. A rebuilt structure serves after the frames that its upload takes.
     LiveProgress work(double budgetMs);
 
-    /// Of each structure that is used, as it is when that one serves and another is incoming,
-    /// whether or not they are right under the TF of now: empty grids stand for those that were not
-    /// built yet.
+    /// A copy for each structure that may come to serve, in which it serves and the next one is
+    /// being uploaded. For making all textures and shaders beforehand: the copies need not be exact
+    /// under the present TF, and structures that were not built yet are empty grids.
     std::vector<LiveSkip> eachServing() const;
 
     const BuiltSkip& current() const { return settledServes_ ? settled_ : always_; }
-    const BuiltSkip& always() const { return always_; }   // of the TF of now, or of an earlier one
-    const BuiltSkip& settled() const { return settled_; } // as well; may not exist
-    /// The next settled one, while its texture is being filled.
+    const BuiltSkip& always() const { return always_; }   // under the present TF or an earlier one
+    const BuiltSkip& settled() const { return settled_; } // likewise; may not exist
+    /// The rebuilt structure while its texture is being uploaded.
     const BuiltSkip& incoming() const { return incoming_; }
-    /// Whether what serves is all that can be had under this TF.
+    /// Whether there is nothing left to rebuild under this TF.
     bool isSettled() const { return !wantsRebuild(); }
-    /// What start() took, and the last finished rebuilding, over all its calls of work().
+    /// Time that start() took; and the last finished rebuilding, summed over its calls of work().
     double startMs() const { return startMs_; }
     double rebuildMs() const { return rebuildMs_; }
 

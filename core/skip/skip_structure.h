@@ -54,19 +54,20 @@ enum class Traversal : std::uint8_t {
 
 const char* name(Traversal traversal);
 
-/// What a user may ask of a structure; what does not belong to it is not looked at.
+/// Parameters of a skip structure. Each field says which structures read it; the others ignore it.
 struct SkipOptions {
     SkipStructure structure = SkipStructure::Proximity;
-    int blockEdgeVoxels = 4;      // of a block, or of an octree's leaf
-    int bits = 32;                // per node of a bitfield octree: 8, 16, 32, 64 or 128
-    int partitions = 16;          // 16, 32, 64, 128 or 256
-    bool separateMinimum = false; // the least value has a bin or partition of its own
-    /// Data values between which bins and partitions are laid; what lies beyond falls into the
-    /// ones at the ends. None: all of the data.
+    int blockEdgeVoxels = 4;      // all: edge of a block, or of an octree's leaf
+    int bits = 32;                // bitfield octree: bins per node: 8, 16, 32, 64 or 128
+    int partitions = 16;          // partitioned maps: 16, 32, 64, 128 or 256
+    bool separateMinimum = false; // bitfield octree, partitioned maps: the least value of the data
+                                  // has a bin or partition of its own
+    /// Bitfield octree, partitioned maps: the data values between which bins or partitions are
+    /// laid. Values beyond fall into the first or last one. None: the data's whole range.
     std::optional<std::array<double, 2>> valueRange;
-    int initialLevel = 2; // levels of an octree from the root that are left out
-    Traversal traversal = Traversal::Bidirectional;
-    std::int64_t memoryBudgetBytes = std::int64_t(256) << 20; // of partitioned maps
+    int initialLevel = 2; // octrees: levels left out, counted from the root
+    Traversal traversal = Traversal::Bidirectional;           // octrees
+    std::int64_t memoryBudgetBytes = std::int64_t(256) << 20; // partitioned maps
 
     bool operator==(const SkipOptions&) const = default;
 };

@@ -55,10 +55,11 @@ struct ErrorChoice {
     int measurements = 0;     // that the expectation is the worst of
 };
 
-/// The cheapest sampling whose expected RMSE is at most `rmse`. Where this very scene was measured,
-/// only that counts; else every other scene of the same space does, and of the samplings those that
-/// most scenes were measured with: a kind one alone would promise too much. Expected is the worst
-/// of what was measured with a sampling, in error and in time. Pure.
+/// The cheapest sampling whose expected RMSE is at most `rmse`. The expected error and time of a
+/// sampling are the worst that were measured with it. Where this scene itself was measured, only
+/// its rows are used. Otherwise the rows of all scenes of the same compositing space are, and only
+/// samplings that the greatest number of scenes was measured with: a sampling that only an easy
+/// scene was measured with would promise too much. Pure.
 /// Fails: InvalidArgument (nothing measured; nothing reaches `rmse`, with the best that was).
 /// Tested by: error_table_test.cpp
 Result<ErrorChoice> cheapestWithin(double rmse, const SceneLabel& scene,
