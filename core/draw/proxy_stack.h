@@ -19,10 +19,9 @@ struct Outline {
     bool empty() const { return halfSize.x <= 0.0 || halfSize.y <= 0.0; }
 };
 
-/// Planes of a view that may touch anything, nearest first: instance k of the draw is plane `first
-/// + k`.
+/// The planes of a view that may touch anything, nearest first.
 struct ProxyStack {
-    int firstPlane = 0;
+    int firstPlane = 0;            // the lattice's number of the first outline's plane
     std::vector<Outline> outlines; // empty where the view sees nothing
 };
 
