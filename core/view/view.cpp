@@ -37,10 +37,10 @@ glm::dmat4 viewFromModel(const OrbitCamera& camera, const BoundingSphere& sphere
     return result;
 }
 
-std::array<View, 2> stereoViews(const View& centre, double ipdMm, double convergence) {
+std::array<View, 2> stereoViews(const View& centre, double eyeDistance, double convergence) {
     std::array<View, 2> eyes{centre, centre};
     for (int eye = 0; eye < 2; ++eye) {
-        const double offset = (eye == 0 ? -0.5 : 0.5) * ipdMm;
+        const double offset = (eye == 0 ? -0.5 : 0.5) * eyeDistance;
         eyes[eye].viewFromModel =
             glm::translate(glm::dmat4(1.0), {-offset, 0.0, 0.0}) * centre.viewFromModel;
         eyes[eye].frustum.left -= offset / convergence;

@@ -50,8 +50,10 @@ struct OrbitCamera {
 
 glm::dmat4 viewFromModel(const OrbitCamera& camera, const BoundingSphere& sphere);
 
-/// Two eyes `ipdMm` apart (view units), parallel, with off-axis frusta that converge at the depth
-/// `convergence`: left first. Each is a View like any other: drawn alone it gives the same image.
-std::array<View, 2> stereoViews(const View& centre, double ipdMm, double convergence);
+/// Two parallel eyes, the left one first, with off-axis frusta that meet at the depth
+/// `convergence`. `eyeDistance` and `convergence` are in view units, which are mm where
+/// viewFromModel does not scale. Each is a View like any other: drawn alone it gives the same
+/// image.
+std::array<View, 2> stereoViews(const View& centre, double eyeDistance, double convergence);
 
 } // namespace slabcast
