@@ -78,6 +78,11 @@ Result<Caps> capsFrom(DeviceStrings strings, const std::vector<std::string>& mas
 }
 
 Result<Caps> queryCaps(const std::vector<std::string>& maskedExtensions) {
+    if (GetString == nullptr) {
+        return fail(ErrorCode::InvalidArgument,
+                    "GL's functions are not loaded: call gl::loadApi() before, with a context "
+                    "current");
+    }
     Result<Caps> caps = capsFrom(currentDeviceStrings(), maskedExtensions);
     if (caps) {
         caps->maxTextureSize = limit(GL_MAX_TEXTURE_SIZE);

@@ -49,7 +49,8 @@ struct DeviceStrings {
 /// Fails: DeviceUnsupported below GLES 3.2. Tested by: gl_objects_gl_test.cpp
 Result<Caps> capsFrom(DeviceStrings strings, const std::vector<std::string>& maskedExtensions);
 
-/// The same of the current context, limits included.
+/// The same of the current context, limits included. Fails: also InvalidArgument before
+/// gl::loadApi().
 Result<Caps> queryCaps(const std::vector<std::string>& maskedExtensions = {});
 
 /// Extensions that desktop drivers offer and a headset may lack: what must not be needed.
