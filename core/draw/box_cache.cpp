@@ -4,21 +4,30 @@
 
 namespace slabcast {
 
-const std::vector<VisibleBox>& BoxCache::boxesOf(const Scene& scene, double layerLengthMm) {
+BoxCache::Key BoxCache::keyOf(const Scene& scene, double layerLengthMm) {
     const BuiltSkip& skip = scene.skip();
-    const Key key{
+    return {
         // A grid is of one transfer function; of an octree, each shows other nodes.
         .look = skip.octree ? scene.lookGeneration() : 0,
         .skip = skip.generation,
         // Up to a power of two: views of slightly different width share their boxes.
         .lengthMm = std::exp2(std::ceil(std::log2(layerLengthMm))),
     };
+}
+
+void BoxCache::prepare(const Scene& scene, double layerLengthMm) {
+    const BuiltSkip& skip = scene.skip();
+    const Key key = keyOf(scene, layerLengthMm);
     if (key != key_) {
         boxes_ = skip.octree ? visibleBoxes(*skip.octree, skip.test, scene.geometry(), key.lengthMm)
                              : visibleBoxes(*skip.lengths, scene.geometry(), key.lengthMm);
         key_ = key;
     }
-    return boxes_;
+}
+
+bool BoxCache::serve(const Scene& scene, double layerLengthMm) const {
+    const Key key = keyOf(scene, layerLengthMm);
+    return key.look == key_.look && key.skip == key_.skip && key.lengthMm <= key_.lengthMm;
 }
 
 } // namespace slabcast

@@ -7,12 +7,15 @@
 
 namespace slabcast {
 
-/// The visible boxes of the scene that was asked for last.
+/// The visible boxes of the scene that was prepared last.
 class BoxCache {
 public:
-    /// Boxes for layers of this length or shorter. Cost: that of visibleBoxes() where the structure
-    /// is another one, of an octree also where the TF is. Contract: the scene has a skip structure.
-    const std::vector<VisibleBox>& boxesOf(const Scene& scene, double layerLengthMm);
+    /// For layers of this length or shorter. Cost: that of visibleBoxes() where the structure is
+    /// another one, of an octree also where the TF is. Contract: the scene has a skip structure.
+    void prepare(const Scene& scene, double layerLengthMm);
+    /// Whether the boxes hold all that is visible of this scene with layers of this length.
+    bool serve(const Scene& scene, double layerLengthMm) const;
+    const std::vector<VisibleBox>& boxes() const { return boxes_; }
 
 private:
     /// What boxes are made for.
@@ -22,6 +25,8 @@ private:
         double lengthMm = 0.0;
         bool operator==(const Key&) const = default;
     };
+    static Key keyOf(const Scene& scene, double layerLengthMm);
+
     Key key_;
     std::vector<VisibleBox> boxes_;
 };

@@ -86,7 +86,7 @@ Result<std::vector<RatioMeasurement>> measureRatios(Renderer& renderer, const Sc
         if (!candidate) {
             return tl::unexpected(candidate.error());
         }
-        if (Result<void> ready = renderer.prepare(scene, *candidate); !ready) {
+        if (Result<void> ready = renderer.prepare(scene, *candidate, small); !ready) {
             return tl::unexpected(ready.error());
         }
         const double ms = medianMs(renderer, scene, *candidate, small, bestMs);

@@ -50,6 +50,17 @@ bool needsLayer(const FramePlan& plan, TargetEncoding encoding) {
            conversionTo(plan.space, encoding) != LayerConversion::None;
 }
 
+bool isEmpty(const Viewport& v) { // a window made small
+    return v.width <= 0 || v.height <= 0;
+}
+
+/// Of the rays of a view the longest one's layers, those in its corners.
+double longestLayerMm(const FramePlan& plan, const Frustum& f) {
+    const glm::dvec2 widest(std::max(std::abs(f.left), std::abs(f.right)),
+                            std::max(std::abs(f.bottom), std::abs(f.top)));
+    return plan.lattice.spacingMm * std::sqrt(1.0 + glm::dot(widest, widest));
+}
+
 } // namespace
 
 struct Renderer::State {
@@ -65,16 +76,22 @@ struct Renderer::State {
     BoxCache boxes;
 
     Result<void> createFixed();
+    /// What the views need beside textures and shaders.
+    Result<void> prepareViews(const Scene& scene, const FramePlan& plan,
+                              std::span<const ViewTarget> views);
+    /// Whether prepareViews() was called for views as large and wide.
+    bool servesView(const Scene& scene, const FramePlan& plan, const ViewTarget& target) const;
     /// Readies the view's planes for drawing; returns the runs to draw them in.
     std::vector<PlaneRun> beginStack(const Scene& scene, const FramePlan& plan, const View& view,
                                      const Viewport& viewport, int planesPerRun);
-    Result<void> resizeLayer(const Scene& scene, const FramePlan& plan, const Viewport& viewport);
+    Result<void> resizeLayer(const Scene& scene, const FramePlan& plan, glm::ivec2 size);
+    std::vector<GLenum> layerFormats(const Scene& scene, const FramePlan& plan) const;
     void drawRun(const gl::ColorTargets& into, const FramePlan& plan, glm::ivec2 size,
                  const gl::Program& program, const PlaneRun& run) const;
     /// Marks what the layer has of saturated pixels in the depth of `marked`.
     void mark(const gl::ColorTargets& marked, const FramePlan& plan, glm::ivec2 size) const;
-    Result<void> drawLayer(const Scene& scene, const FramePlan& plan, const ViewTarget& target,
-                           const gl::Program& program);
+    void drawLayer(const Scene& scene, const FramePlan& plan, const ViewTarget& target,
+                   const gl::Program& program);
     Result<void> count(const Scene& scene, const FramePlan& plan, const ViewTarget& target);
 };
 
@@ -95,12 +112,9 @@ std::vector<PlaneRun> Renderer::State::beginStack(const Scene& scene, const Fram
     SLABCAST_EXPECTS(!plan.tighten || scene.skip().exists(), plan.tighten);
     ProxyStack stack;
     if (plan.tighten) {
-        const Frustum& f = view.frustum;
-        const glm::dvec2 widest(std::max(std::abs(f.left), std::abs(f.right)),
-                                std::max(std::abs(f.bottom), std::abs(f.top)));
-        const double longest = plan.lattice.spacingMm * std::sqrt(1.0 + glm::dot(widest, widest));
-        stack = tightStack(frame, f, view.viewFromModel * scene.geometry().modelFromUvw(),
-                           boxes.boxesOf(scene, longest), plan.planes, plan.layersPerPlane);
+        stack =
+            tightStack(frame, view.frustum, view.viewFromModel * scene.geometry().modelFromUvw(),
+                       boxes.boxes(), plan.planes, plan.layersPerPlane);
     } else {
         stack = sphereStack(frame, view.frustum, plan.planes, plan.layersPerPlane);
     }
@@ -153,7 +167,8 @@ Result<void> Renderer::buildSkip(Scene& scene, const SkipOptions& options) {
     });
 }
 
-Result<void> Renderer::prepare(const Scene& scene, const FramePlan& plan) {
+Result<void> Renderer::prepare(const Scene& scene, const FramePlan& plan,
+                               std::span<const ViewTarget> views) {
     if (plan.drawsNothing) {
         const gl::StateGuard guard;
         if (scene.live() == nullptr) { // else the TF may be another one in the next frame
@@ -181,19 +196,55 @@ Result<void> Renderer::prepare(const Scene& scene, const FramePlan& plan) {
         }
     }
     const Result<const gl::Program*> program = state_->programs.need(plan.variant);
-    return program ? Result<void>{} : tl::unexpected(program.error());
+    return program ? state_->prepareViews(scene, plan, views) : tl::unexpected(program.error());
 }
 
-Result<void> Renderer::State::resizeLayer(const Scene& scene, const FramePlan& plan,
-                                          const Viewport& v) {
+Result<void> Renderer::State::prepareViews(const Scene& scene, const FramePlan& plan,
+                                           std::span<const ViewTarget> views) {
+    double longest = 0.0;
+    glm::ivec2 layerSize(0);
+    for (const ViewTarget& target : views) {
+        const Viewport& v = target.viewport;
+        if (isEmpty(v)) {
+            continue;
+        }
+        longest = std::max(longest, longestLayerMm(plan, target.view.frustum));
+        if (needsLayer(plan, target.encoding)) {
+            layerSize = glm::max(layerSize, glm::ivec2(v.width, v.height));
+        }
+    }
+    if (plan.tighten && longest > 0.0) {
+        SLABCAST_EXPECTS(scene.skip().exists(), plan.tighten);
+        boxes.prepare(scene, longest);
+    }
+    return layerSize.x > 0 ? resizeLayer(scene, plan, layerSize) : Result<void>{};
+}
+
+bool Renderer::State::servesView(const Scene& scene, const FramePlan& plan,
+                                 const ViewTarget& target) const {
+    const Viewport& v = target.viewport;
+    const bool tightened =
+        !plan.tighten || boxes.serve(scene, longestLayerMm(plan, target.view.frustum));
+    const bool layered =
+        !needsLayer(plan, target.encoding) ||
+        layer.holds(v.width, v.height, glFormat(plan.target), plan.planesPerMark > 0);
+    return tightened && layered;
+}
+
+std::vector<GLenum> Renderer::State::layerFormats(const Scene& scene, const FramePlan& plan) const {
     std::vector<GLenum> formats{glFormat(plan.target)};
-    // Only ever grows: views of different sizes share it without a new one in every frame. So do
-    // TFs that need marks and others that do not, while the scene is edited.
+    // TFs that need marks and others that do not share it while the scene is edited.
     if (plan.planesPerMark > 0 || (scene.live() != nullptr && layer.hasDepth())) {
         formats.push_back(GL_DEPTH_COMPONENT16);
     }
-    return layer.resize(std::max(v.width, layer.width()), std::max(v.height, layer.height()),
-                        formats);
+    return formats;
+}
+
+/// Only ever grows: views of different sizes share it without a new one in every frame.
+Result<void> Renderer::State::resizeLayer(const Scene& scene, const FramePlan& plan,
+                                          glm::ivec2 size) {
+    return layer.resize(std::max(size.x, layer.width()), std::max(size.y, layer.height()),
+                        layerFormats(scene, plan));
 }
 
 void Renderer::State::drawRun(const gl::ColorTargets& into, const FramePlan& plan, glm::ivec2 size,
@@ -211,13 +262,10 @@ void Renderer::State::mark(const gl::ColorTargets& marked, const FramePlan& plan
     marks.mark(layer.texture(0), marked.depth(), size, saturatedAlpha(plan));
 }
 
-Result<void> Renderer::State::drawLayer(const Scene& scene, const FramePlan& plan,
-                                        const ViewTarget& target, const gl::Program& program) {
+void Renderer::State::drawLayer(const Scene& scene, const FramePlan& plan, const ViewTarget& target,
+                                const gl::Program& program) {
     const Viewport& v = target.viewport;
     const glm::ivec2 size(v.width, v.height);
-    if (Result<void> done = resizeLayer(scene, plan, v); !done) {
-        return done;
-    }
     usePlaneBlending(plan.order);
     layer.begin();
     const std::vector<PlaneRun> runs =
@@ -233,7 +281,6 @@ Result<void> Renderer::State::drawLayer(const Scene& scene, const FramePlan& pla
     gl::BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     gl::Viewport(v.x, v.y, v.width, v.height);
     compositor.composite(layer.texture(0), v.x, v.y, conversionTo(plan.space, target.encoding));
-    return {};
 }
 
 Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
@@ -247,14 +294,19 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
     SLABCAST_EXPECTS(fits(plan, scene) && state_->textures.serve(scene, plan),
                      scene.lookGeneration());
     for (const ViewTarget& target : views) {
+        if (!isEmpty(target.viewport) && !state_->servesView(scene, plan, target)) {
+            return fail(ErrorCode::InvalidArgument,
+                        "a view is larger or wider than those that were prepared, or its target is "
+                        "encoded otherwise: prepare() with these views first");
+        }
+    }
+    for (const ViewTarget& target : views) {
         const Viewport& v = target.viewport;
-        if (v.width <= 0 || v.height <= 0) {
-            continue; // a window made small
+        if (isEmpty(v)) {
+            continue;
         }
         if (needsLayer(plan, target.encoding)) {
-            if (Result<void> done = state_->drawLayer(scene, plan, target, *program); !done) {
-                return done;
-            }
+            state_->drawLayer(scene, plan, target, *program);
             continue;
         }
         usePlaneBlending(plan.order);
@@ -265,19 +317,6 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
         }
     }
     return {};
-}
-
-Result<void> Renderer::reserve(const Scene& scene, const FramePlan& plan,
-                               std::span<const ViewTarget> views) {
-    const gl::StateGuard guard;
-    Result<void> done;
-    for (const ViewTarget& target : views) {
-        const Viewport& v = target.viewport;
-        if (v.width > 0 && v.height > 0 && needsLayer(plan, target.encoding)) {
-            done = done.and_then([&] { return state_->resizeLayer(scene, plan, v); });
-        }
-    }
-    return done;
 }
 
 /// Counts run by run. What is left out behind a run depends on the picture so far, so that the
@@ -297,10 +336,13 @@ Result<void> Renderer::State::count(const Scene& scene, const FramePlan& plan,
     }
     std::vector<GLenum> formats{GL_RGBA32F, GL_RGBA32F};
     formats.resize(marked ? 3 : 2, GL_DEPTH_COMPONENT16);
-    Result<void> resized = counters.resize(v.width, v.height, formats);
-    if (resized && needsPicture) {
-        resized = resizeLayer(scene, plan, v);
-    }
+    Result<void> resized =
+        counters.resize(v.width, v.height, formats)
+            .and_then([&] {
+                return prepareViews(scene, plan, {&target, 1});
+            })
+            .and_then(
+                [&] { return needsPicture ? resizeLayer(scene, plan, size) : Result<void>{}; });
     if (!resized) {
         return resized;
     }

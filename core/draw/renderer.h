@@ -79,12 +79,15 @@ public:
     /// the device lacks the capacity, and as buildSkipOnGpu(): Scene::setLook() builds on the CPU.
     Result<void> buildSkip(Scene& scene, const SkipOptions& options);
 
-    /// Brings textures and shaders up to date with scene and plan. Nothing is done for what is
-    /// there already; textures that the plan does not use are released (all, where it draws
-    /// nothing; while the scene is edited, what the next TF may need stays), compiled shaders are
-    /// kept. Restores the GL state (gl::StateGuard). Fails: InvalidArgument (the plan is not for
+    /// Brings all that draw() needs up to date with scene, plan and views: textures, shaders, a
+    /// layer of our own as large as the largest view, the boxes that planes are tightened around.
+    /// Nothing is done for what is there already; textures that the plan does not use are released
+    /// (all, where it draws nothing; while the scene is edited, what the next TF may need stays),
+    /// compiled shaders are kept. Of the views, sizes, encodings and frusta count, not where they
+    /// look. Restores the GL state (gl::StateGuard). Fails: InvalidArgument (the plan is not for
     /// the scene's look), DeviceOutOfMemory, VolumeTooLarge, ShaderCompile.
-    Result<void> prepare(const Scene& scene, const FramePlan& plan);
+    Result<void> prepare(const Scene& scene, const FramePlan& plan,
+                         std::span<const ViewTarget> views);
 
     /// Blends the volume over what each target holds, as premultiplied colour. One instanced draw
     /// per view, or one between marks of saturation; a layer of our own in between only where
@@ -92,13 +95,10 @@ public:
     /// termination, colour and opacity are off by at most what the termination opacity lacks of 1,
     /// in either order, beside the rounding of each plane's blending. Restores the GL state that
     /// gl::StateGuard documents. Contract: the last prepare() was for this scene, its look and this
-    /// plan, or one that uses the same textures. Fails: DeviceOutOfMemory (a layer of our own).
+    /// plan, or one that uses the same textures. Views may look elsewhere than those prepared.
+    /// Fails: InvalidArgument (a view is larger or wider than those prepared, or encoded
+    /// otherwise); then nothing was drawn.
     Result<void> draw(const Scene& scene, const FramePlan& plan, std::span<const ViewTarget> views);
-
-    /// Makes the layer of our own that draw() would need for these views, so that it need not.
-    /// Fails: DeviceOutOfMemory.
-    Result<void> reserve(const Scene& scene, const FramePlan& plan,
-                         std::span<const ViewTarget> views);
 
     /// Draws the same frame once more, counting instead of colouring, and waits for the sums.
     /// Fails: DeviceUnsupported where float32 targets do not blend (GL_EXT_float_blend).

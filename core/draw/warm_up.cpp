@@ -80,9 +80,9 @@ Result<void> warmUpForEditing(Renderer& renderer, const Scene& scene, const Sett
             return tl::unexpected(plans.error());
         }
         for (const FramePlan& one : *plans) {
-            done = renderer.prepare(served, one)
-                       .and_then([&] { return renderer.reserve(served, one, views); })
-                       .and_then([&] { return renderer.draw(served, one, targets); });
+            done = renderer.prepare(served, one, views).and_then([&] {
+                return renderer.draw(served, one, targets);
+            });
             if (!done) {
                 return done;
             }

@@ -35,6 +35,11 @@ public:
     int height() const { return height_; }
     GLuint framebuffer() const { return framebuffer_.id(); }
     GLuint texture(std::size_t index) const { return textures_[index].id(); }
+    /// Whether a picture of this size and first format fits, with depth beside it where asked.
+    bool holds(int width, int height, GLenum format, bool depth) const {
+        return framebuffer_ && width <= width_ && height <= height_ && formats_.front() == format &&
+               (hasDepth() || !depth);
+    }
     bool hasDepth() const { return !formats_.empty() && formats_.back() == GL_DEPTH_COMPONENT16; }
     GLuint depth() const { return textures_.back().id(); } // contract: there is one
     std::int64_t bytes() const;

@@ -81,7 +81,7 @@ Result<Drawn> Bench::draw(const Scene& scene, const FramePlan& plan, const View&
     const TargetEncoding encoding =
         plan.space == CompositingSpace::Display ? TargetEncoding::Encoded : TargetEncoding::Linear;
     const ViewTarget where{view, target_.framebuffer(), {0, 0, size.x, size.y}, encoding};
-    if (Result<void> ready = renderer_.prepare(scene, plan); !ready) {
+    if (Result<void> ready = renderer_.prepare(scene, plan, {&where, 1}); !ready) {
         return tl::unexpected(ready.error());
     }
     if (Result<void> done = renderer_.draw(scene, plan, {&where, 1}); !done) {
@@ -92,10 +92,10 @@ Result<Drawn> Bench::draw(const Scene& scene, const FramePlan& plan, const View&
 
 Result<WorkCounters> Bench::countWork(const Scene& scene, const FramePlan& plan, const View& view,
                                       glm::ivec2 size) {
-    if (Result<void> ready = renderer_.prepare(scene, plan); !ready) {
+    const ViewTarget where{view, 0, {0, 0, size.x, size.y}};
+    if (Result<void> ready = renderer_.prepare(scene, plan, {&where, 1}); !ready) {
         return tl::unexpected(ready.error());
     }
-    const ViewTarget where{view, 0, {0, 0, size.x, size.y}};
     return renderer_.countWork(scene, plan, {&where, 1});
 }
 

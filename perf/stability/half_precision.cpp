@@ -114,7 +114,7 @@ Result<Picture> drawn(Bench& bench, const Scene& scene, const FramePlan& plan, c
     }
     target.begin();
     const ViewTarget where{view, target.framebuffer(), {0, 0, kSize.x, kSize.y}};
-    if (Result<void> ready = bench.renderer().prepare(scene, plan); !ready) {
+    if (Result<void> ready = bench.renderer().prepare(scene, plan, {&where, 1}); !ready) {
         return tl::unexpected(ready.error());
     }
     if (Result<void> done = bench.renderer().draw(scene, plan, {&where, 1}); !done) {

@@ -101,7 +101,7 @@ private:
             views.push_back(
                 {viewOf(i, degrees), target_.framebuffer(), {i % side_, i / side_, 1, 1}});
         }
-        if (Result<void> ready = bench_.renderer().prepare(scene_, plan); !ready) {
+        if (Result<void> ready = bench_.renderer().prepare(scene_, plan, views); !ready) {
             return tl::unexpected(ready.error());
         }
         if (Result<void> done = bench_.renderer().draw(scene_, plan, views); !done) {

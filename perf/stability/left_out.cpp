@@ -40,7 +40,7 @@ FramePlan withAll(FramePlan plan) {
 /// One frame until the GPU has finished it, ms.
 Result<double> frameMs(Bench& bench, const Scene& scene, const FramePlan& plan,
                        const ViewTarget& where) {
-    if (Result<void> ready = bench.renderer().prepare(scene, plan); !ready) {
+    if (Result<void> ready = bench.renderer().prepare(scene, plan, {&where, 1}); !ready) {
         return tl::unexpected(ready.error());
     }
     gl::Finish();

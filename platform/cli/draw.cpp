@@ -137,7 +137,7 @@ Result<void> Stage::prepare(const FramePlan& plan) {
     if (Result<void> made = target_.resize(options_.size.x, options_.size.y, {format}); !made) {
         return made;
     }
-    return renderer_.prepare(scene(), plan);
+    return renderer_.prepare(scene(), plan, views(0.0));
 }
 
 std::vector<ViewTarget> Stage::views(double turnDegrees) const {

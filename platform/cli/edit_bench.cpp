@@ -111,8 +111,8 @@ Result<void> EditBench::drawLive(const EditFrame& frame, double turnDegrees, Edi
         live_.work(std::min(options_.workBudgetMs, std::max(kLeastMs, kMostOfFrame * lastDrawMs_)));
     row.workMs = watch.lapMs();
     const Result<FramePlan> plan = planOf(live_, settings_);
-    Result<void> done =
-        plan ? policysRenderer_.prepare(live_, *plan) : tl::unexpected(plan.error());
+    Result<void> done = plan ? policysRenderer_.prepare(live_, *plan, stage_->views(turnDegrees))
+                             : tl::unexpected(plan.error());
     row.prepareMs = watch.lapMs();
     done = done.and_then([&] { return draw(policysRenderer_, live_, *plan, turnDegrees); });
     row.drawMs = lastDrawMs_ = watch.lapMs();
@@ -132,7 +132,9 @@ Result<void> EditBench::drawOctree(const EditFrame& frame, double turnDegrees, E
         done = octree_.edit(*frame.newTransfer);
     }
     const Result<FramePlan> plan = planOf(octree_, settings);
-    done = plan ? done.and_then([&] { return othersRenderer_.prepare(octree_, *plan); })
+    done = plan ? done.and_then([&] {
+        return othersRenderer_.prepare(octree_, *plan, stage_->views(turnDegrees));
+    })
                 : tl::unexpected(plan.error());
     std::vector<double> times;
     for (int k = -1; k < options_.octreeFrames && done; ++k) { // -1 warms up
@@ -153,7 +155,9 @@ Result<void> EditBench::drawNaive(const EditFrame& frame, double turnDegrees, Ed
     Renderer& renderer = othersRenderer_;
     const auto prepared = [&] {
         return planOf(naive_, settings_).and_then([&](FramePlan plan) {
-            return renderer.prepare(naive_, plan).map([&] { return plan; });
+            return renderer.prepare(naive_, plan, stage_->views(turnDegrees)).map([&] {
+                return plan;
+            });
         });
     };
     Result<FramePlan> plan = prepared(); // its textures, which the octree's took turns with
@@ -183,7 +187,7 @@ Result<void> EditBench::compare(double turnDegrees, const std::vector<glm::vec4>
     if (!plan) {
         return tl::unexpected(plan.error());
     }
-    return othersRenderer_.prepare(naive_, *plan)
+    return othersRenderer_.prepare(naive_, *plan, stage_->views(turnDegrees))
         .and_then([&] { return draw(othersRenderer_, naive_, *plan, turnDegrees); })
         .map([&] { row.equal = target_.read() == picture; });
 }

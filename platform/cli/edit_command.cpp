@@ -53,7 +53,7 @@ Result<FramePlan> decide(Stage& stage, const EditScript& script, const LiveOptio
     Result<FramePlan> decided = stage.decide(settings);
     FramePlan nothing;
     nothing.drawsNothing = true; // lets the stage's textures go, where ratios were measured
-    return stage.renderer().prepare(stage.scene(), nothing).and_then([&] { return decided; });
+    return stage.renderer().prepare(stage.scene(), nothing, {}).and_then([&] { return decided; });
 }
 
 Result<std::vector<EditRow>> replayAll(EditBench& bench, const EditScript& script,

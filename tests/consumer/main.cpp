@@ -19,10 +19,9 @@ int main() {
     orExit(scene.setLook({.tf = red}, {}, 256));
     const FramePlan framePlan = orExit(plan(scene.facts(), {}, caps, {}));
     Renderer renderer = orExit(Renderer::create(caps));
-    orExit(renderer.prepare(scene, framePlan));
-
     const View view{viewFromModel({}, scene.facts().sphere), symmetricFrustum(40.0, 1.0)};
     const std::array views{ViewTarget{view, target.framebuffer.id(), {0, 0, 64, 64}}};
+    orExit(renderer.prepare(scene, framePlan, views));
     orExit(renderer.draw(scene, framePlan, views));
 
     gl::BindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer.id());

@@ -140,7 +140,7 @@ protected:
         const HostTarget host(target.format);
         host.fill(glm::dvec4(stored, 1.0));
         const ViewTarget where{view, host.id(), kWhole, target.encoding};
-        ASSERT_TRUE(renderer().prepare(scene, plan).has_value());
+        ASSERT_TRUE(renderer().prepare(scene, plan, {&where, 1}).has_value());
         ASSERT_TRUE(renderer().draw(scene, plan, {&where, 1}).has_value());
 
         const Picture picture = host.read();
@@ -182,7 +182,6 @@ TEST_F(EncodingTest, ViewsOfDifferentSizeShareTheLayer) {
     Settings settings = segments(8, SegmentForm::Loop);
     settings.space = CompositingSpace::Linear;
     const FramePlan plan = decide(scene, settings);
-    ASSERT_TRUE(renderer().prepare(scene, plan).has_value());
     const auto view = [&](glm::ivec2 size) {
         return orbitView(scene, {25.0, 15.0, 2.3}, 45.0, size);
     };
@@ -193,6 +192,7 @@ TEST_F(EncodingTest, ViewsOfDifferentSizeShareTheLayer) {
     for (const Viewport& v : places) {
         targets.push_back({view({v.width, v.height}), both.id(), v, TargetEncoding::Encoded});
     }
+    ASSERT_TRUE(renderer().prepare(scene, plan, targets).has_value());
     ASSERT_TRUE(renderer().draw(scene, plan, targets).has_value());
     const Picture together = both.read();
     for (std::size_t k = 0; k < 2; ++k) {

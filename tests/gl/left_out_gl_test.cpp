@@ -24,7 +24,7 @@ protected:
         return settings;
     }
     void prepare(const Scene& scene, const FramePlan& plan) {
-        const Result<void> prepared = renderer().prepare(scene, plan);
+        const Result<void> prepared = renderer().prepare(scene, plan, {});
         ASSERT_TRUE(prepared.has_value()) << prepared.error().detail;
     }
     std::vector<std::string> samplersOf(const FramePlan& plan) {

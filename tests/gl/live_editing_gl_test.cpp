@@ -254,11 +254,11 @@ TEST_F(LiveEditingTest, AfterWarmingUpNothingIsCompiledNorAllocated) {
     ASSERT_TRUE(warm.has_value()) << warm.error().detail;
     const auto frame = [&] {
         const FramePlan plan = planOf(scene);
-        EXPECT_TRUE(own->prepare(scene, plan).has_value());
+        EXPECT_TRUE(own->prepare(scene, plan, {&where, 1}).has_value());
         EXPECT_TRUE(own->draw(scene, plan, {&where, 1}).has_value());
         return plan;
     };
-    ASSERT_TRUE(own->prepare(scene, planOf(scene)).has_value());
+    ASSERT_TRUE(own->prepare(scene, planOf(scene), {&where, 1}).has_value());
     const Calls calls;
     std::vector<std::string> variants;
     double low = 1000.0; // ever more is shown: no map serves before it is rebuilt

@@ -194,7 +194,7 @@ TEST_F(PreintegratedTest, ARunOfLayersTakesOneSampleMore) {
     for (const SegmentCase& c : kSegmentCases) {
         const FramePlan plan = decide(scene, preintegrated(segments(c.layersPerPlane, c.form)));
         const ViewTarget target{view, 0, {0, 0, kSize.x, kSize.y}, TargetEncoding::Encoded};
-        ASSERT_TRUE(renderer().prepare(scene, plan).has_value());
+        ASSERT_TRUE(renderer().prepare(scene, plan, {&target, 1}).has_value());
         const Result<WorkCounters> work = renderer().countWork(scene, plan, {&target, 1});
         ASSERT_TRUE(work.has_value());
         // Segments that meet the box, and their layers, from the rays alone.

@@ -257,7 +257,7 @@ TEST_F(RendererTest, TouchesNothingOutsideTheViewport) {
         ASSERT_TRUE(target.resize(kSize.x, kSize.y, {GL_RGBA16F}).has_value());
         target.begin(glm::vec4(0.5F));
         const ViewTarget where{inside, target.framebuffer(), viewport};
-        ASSERT_TRUE(renderer().prepare(scene, plan).has_value());
+        ASSERT_TRUE(renderer().prepare(scene, plan, {&where, 1}).has_value());
         ASSERT_TRUE(renderer().draw(scene, plan, {&where, 1}).has_value());
         const Picture picture{kSize, target.read()};
         for (int y = 0; y < kSize.y; ++y) {

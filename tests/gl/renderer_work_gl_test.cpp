@@ -13,8 +13,8 @@ class CountersTest : public RenderTest {
 protected:
     WorkCounters count(const Scene& scene, const Settings& settings, const View& view) {
         const FramePlan plan = decide(scene, settings);
-        EXPECT_TRUE(renderer().prepare(scene, plan).has_value());
         const ViewTarget where{view, 0, {0, 0, kSize.x, kSize.y}};
+        EXPECT_TRUE(renderer().prepare(scene, plan, {&where, 1}).has_value());
         const Result<WorkCounters> counted = renderer().countWork(scene, plan, {&where, 1});
         EXPECT_TRUE(counted.has_value());
         return counted.value_or(WorkCounters{});
@@ -160,17 +160,17 @@ TEST_F(RendererUpkeepTest, RefusesAPlanForAnotherLook) {
     const Scene scene =
         makeScene(constantVolume({4, 4, 4}, 5), {.tf = uniformTransfer(1.0, glm::dvec3(1.0))});
     Settings settings = segments(8, SegmentForm::Loop);
-    EXPECT_TRUE(renderer().prepare(scene, decide(scene, settings)).has_value());
+    EXPECT_TRUE(renderer().prepare(scene, decide(scene, settings), {}).has_value());
     settings.shaded = true;
-    const Result<void> lit = renderer().prepare(scene, decide(scene, settings));
+    const Result<void> lit = renderer().prepare(scene, decide(scene, settings), {});
     ASSERT_FALSE(lit.has_value());
     EXPECT_EQ(lit.error().code, ErrorCode::InvalidArgument);
     settings.shaded = false;
     settings.space = CompositingSpace::Linear;
-    EXPECT_FALSE(renderer().prepare(scene, decide(scene, settings)).has_value());
+    EXPECT_FALSE(renderer().prepare(scene, decide(scene, settings), {}).has_value());
     settings.space = CompositingSpace::Display;
     settings.classification = Classification::Pre;
-    EXPECT_FALSE(renderer().prepare(scene, decide(scene, settings)).has_value());
+    EXPECT_FALSE(renderer().prepare(scene, decide(scene, settings), {}).has_value());
 }
 
 TEST_F(RendererUpkeepTest, LeavesTheStateAsItWas) {
@@ -202,7 +202,7 @@ TEST_F(RendererUpkeepTest, LeavesTheStateAsItWas) {
     settings.space = CompositingSpace::Linear; // with a layer of our own
     settings.skip = SkipStructure::Proximity;
     const FramePlan plan = decide(scene, settings);
-    ASSERT_TRUE(renderer().prepare(scene, plan).has_value());
+    ASSERT_TRUE(renderer().prepare(scene, plan, views).has_value());
     EXPECT_EQ(StateSample::take().values, before.values) << "prepare";
     ASSERT_TRUE(renderer().draw(scene, plan, views).has_value());
     EXPECT_EQ(StateSample::take().values, before.values) << "draw";

@@ -321,12 +321,12 @@ TEST_F(HostSwitchesGl, ChangeNothingOfWhatIsDrawn) {
     Settings settings = test::segments(4, SegmentForm::Loop);
     settings.target = TargetFormat::Rgba8;
     const FramePlan plan = decide(scene, settings);
-    ASSERT_TRUE(renderer().prepare(scene, plan).has_value());
     const auto drawnUnder = [&](GLenum hostSwitch) {
         const MultisampleTarget target(test::kSize);
         const ViewTarget where{test::asymmetricView(scene),
                                target.framebuffer(),
                                {0, 0, test::kSize.x, test::kSize.y}};
+        EXPECT_TRUE(renderer().prepare(scene, plan, {&where, 1}).has_value());
         gl::Enable(hostSwitch);
         EXPECT_TRUE(renderer().draw(scene, plan, {&where, 1}).has_value());
         EXPECT_TRUE(gl::IsEnabled(hostSwitch)) << hostSwitch;

@@ -76,7 +76,7 @@ protected:
     }
     std::vector<PixelWork> work(const Scene& scene, const FramePlan& plan, const View& view,
                                 glm::ivec2 size) {
-        EXPECT_TRUE(renderer().prepare(scene, plan).has_value());
+        EXPECT_TRUE(renderer().prepare(scene, plan, {}).has_value());
         const Result<std::vector<PixelWork>> counted =
             renderer().workPerPixel(scene, plan, {view, 0, {0, 0, size.x, size.y}});
         EXPECT_TRUE(counted.has_value());
@@ -301,6 +301,7 @@ TEST_F(TerminationTest, EachEyeIsItsMonoPictureAndViewsShareTheLayer) {
         const Viewport places[] = {{0, 0, eye.x, eye.y}, {eye.x, 0, eye.x, eye.y}};
         const ViewTarget both[] = {{eyes[0], wide.framebuffer(), places[0]},
                                    {eyes[1], wide.framebuffer(), places[1]}};
+        ASSERT_TRUE(renderer().prepare(scene, plan, both).has_value());
         ASSERT_TRUE(renderer().draw(scene, plan, both).has_value());
         const Picture picture{{2 * eye.x, eye.y}, wide.read()};
         EXPECT_GT(differingPixels(mono[0], mono[1]), 300);

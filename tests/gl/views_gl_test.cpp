@@ -185,7 +185,7 @@ protected:
 
     /// Both eyes of a scene in the given framebuffers and viewports.
     void drawEyes(const Scene& scene, const FramePlan& plan, std::span<const ViewTarget> targets) {
-        ASSERT_TRUE(renderer().prepare(scene, plan).has_value());
+        ASSERT_TRUE(renderer().prepare(scene, plan, targets).has_value());
         ASSERT_TRUE(renderer().draw(scene, plan, targets).has_value());
     }
     std::array<View, 2> eyesOf(const Scene& scene) {

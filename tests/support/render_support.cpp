@@ -162,7 +162,7 @@ Picture RenderTest::draw(const Scene& scene, const FramePlan& plan, const View& 
     const TargetEncoding encoding =
         plan.space == CompositingSpace::Display ? TargetEncoding::Encoded : TargetEncoding::Linear;
     const ViewTarget where{view, target.framebuffer(), {0, 0, size.x, size.y}, encoding};
-    EXPECT_TRUE(renderer().prepare(scene, plan).has_value());
+    EXPECT_TRUE(renderer().prepare(scene, plan, {&where, 1}).has_value());
     EXPECT_TRUE(renderer().draw(scene, plan, {&where, 1}).has_value());
     return {size, target.read()};
 }
