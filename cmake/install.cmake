@@ -1,14 +1,16 @@
 # What `cmake --install` lays down: one static library, its headers and its export file per component.
-# Consumers write find_package(Slabcast COMPONENTS egl io) and link Slabcast::core, Slabcast::egl, Slabcast::io.
+# Consumers write find_package(Slabcast COMPONENTS egl json io) and link Slabcast::core, Slabcast::egl,
+# Slabcast::json, Slabcast::io.
 include(CMakePackageConfigHelpers)
 
 set(packageDir ${CMAKE_INSTALL_LIBDIR}/cmake/Slabcast)
 set(headerRoot ${CMAKE_INSTALL_INCLUDEDIR}/slabcast)
 set(headers_core core)
 set(headers_egl platform/egl)
+set(headers_json platform/json)
 set(headers_io platform/io)
 
-foreach(component IN ITEMS core egl io)
+foreach(component IN ITEMS core egl json io)
     if(NOT TARGET slabcast_${component})
         continue()
     endif()
@@ -18,7 +20,8 @@ foreach(component IN ITEMS core egl io)
         FILE Slabcast_${component}.cmake DESTINATION ${packageDir})
     # Includes keep their form: "core/volume/volume.h" here and there.
     install(DIRECTORY ${headers_${component}}/ DESTINATION ${headerRoot}/${headers_${component}}
-        FILES_MATCHING PATTERN "*.h" PATTERN "itk_*" EXCLUDE) # what includes ITK stays inside
+        FILES_MATCHING PATTERN "*.h" PATTERN "itk_*" EXCLUDE # what includes ITK stays inside
+        PATTERN "json_checks.h" EXCLUDE PATTERN "preset_texts.h" EXCLUDE) # and nlohmann-json, and what is generated
 endforeach()
 
 if(TARGET slabcast_images)

@@ -9,6 +9,7 @@
 #include "core/draw/ratio_tuner.h"
 #include "core/gl/api.h"
 #include "platform/cli/progress.h"
+#include "platform/cli/transfer_choice.h"
 
 namespace slabcast {
 
@@ -40,8 +41,8 @@ Result<Stage> Stage::open(const SceneOptions& options) {
     if (!loaded) {
         return tl::unexpected(loaded.error());
     }
-    Result<TransferFunction> tf =
-        chooseTransferFunction(options.tf, loaded->scene, loaded->info.modality);
+    Result<TransferFunction> tf = chooseTransferFunction(
+        options.tf, {loaded->scene.statistics(), loaded->info.unit}, loaded->info.modality);
     if (!tf) {
         return tl::unexpected(tf.error());
     }

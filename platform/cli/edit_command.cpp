@@ -8,8 +8,9 @@
 #include "platform/cli/progress.h"
 #include "platform/cli/report_files.h"
 #include "platform/cli/skip_options.h"
+#include "platform/cli/transfer_choice.h"
 #include "platform/io/atomic_file.h"
-#include "platform/io/json_checks.h"
+#include "platform/json/json_checks.h"
 
 namespace slabcast {
 
@@ -21,13 +22,14 @@ using nlohmann::json;
 /// The start is the script's own, or what --tf says.
 Result<EditScript> scriptOf(const EditOptions& options, const Stage& stage) {
     const Scene& scene = stage.scene();
+    const TransferSubject subject{scene.statistics(), stage.info().unit};
     const TransferByName byName = [&](const std::string& name) {
-        return chooseTransferFunction(name, scene, stage.info().modality);
+        return chooseTransferFunction(name, subject, stage.info().modality);
     };
     if (!options.scriptFile.empty()) {
         return readText(options.scriptFile, "script").and_then([&](const std::string& text) {
             return parseEditScript(text, fs::path(options.scriptFile).filename().string(), byName,
-                                   scene.statistics());
+                                   subject);
         });
     }
     if (!options.interpolate) {

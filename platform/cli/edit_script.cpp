@@ -2,8 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "platform/io/json_checks.h"
-#include "platform/io/transfer_json.h"
+#include "platform/json/json_checks.h"
 
 namespace slabcast {
 
@@ -17,6 +16,7 @@ constexpr JsonRange kFrameCount = {1, 100000};
 struct Reader {
     const std::string& sourceName;
     const TransferByName& byName;
+    const TransferSubject& subject;
 
     Checked<TransferFunction> transfer(const json& object, const std::string& at,
                                        const char* key) const {
@@ -25,9 +25,9 @@ struct Reader {
         if (found == object.end()) {
             return complain(path, "is missing: give a preset, a file or a transfer function");
         }
-        const Result<TransferFunction> tf = found->is_string()
-                                                ? byName(found->get<std::string>())
-                                                : parseTransferFunction(found->dump(), path);
+        const Result<TransferFunction> tf =
+            found->is_string() ? byName(found->get<std::string>())
+                               : parseTransferFunction(found->dump(), path, subject);
         if (tf) {
             return *tf;
         }
@@ -131,7 +131,7 @@ Checked<void> addStep(EditWriter& writer, const Reader& reader, const json& step
     return complain(inside(at, "kind"), fmt::format("'{}' is none of {}", *kind, known));
 }
 
-Checked<EditScript> read(const json& document, const Reader& reader, const VolumeStatistics& data) {
+Checked<EditScript> read(const json& document, const Reader& reader) {
     if (Checked<void> keys = checkKeys(document, "", {"start", "steps"}); !keys) {
         return tl::unexpected(keys.error());
     }
@@ -143,7 +143,7 @@ Checked<EditScript> read(const json& document, const Reader& reader, const Volum
     if (steps == document.end() || !steps->is_array() || steps->empty()) {
         return complain("steps", "expected a list of at least one step");
     }
-    EditWriter writer(std::move(*start), data);
+    EditWriter writer(std::move(*start), reader.subject.statistics);
     for (std::size_t k = 0; k < steps->size(); ++k) {
         const std::string at = fmt::format("steps[{}]", k);
         if (Checked<void> added = addStep(writer, reader, (*steps)[k], at); !added) {
@@ -156,10 +156,10 @@ Checked<EditScript> read(const json& document, const Reader& reader, const Volum
 } // namespace
 
 Result<EditScript> parseEditScript(std::string_view text, const std::string& sourceName,
-                                   const TransferByName& byName, const VolumeStatistics& data) {
+                                   const TransferByName& byName, const TransferSubject& subject) {
     return parseJson(text, sourceName, ErrorCode::InvalidArgument)
         .and_then([&](const json& document) -> Result<EditScript> {
-            Checked<EditScript> script = read(document, {sourceName, byName}, data);
+            Checked<EditScript> script = read(document, {sourceName, byName, subject});
             if (!script) {
                 return fail(ErrorCode::InvalidArgument,
                             fmt::format("{}: {}", sourceName, said(script.error())));

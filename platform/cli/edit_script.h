@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "platform/cli/edit_writer.h"
+#include "platform/json/transfer_json.h"
 
 namespace slabcast {
 
@@ -24,6 +25,6 @@ using TransferByName = std::function<Result<TransferFunction>(const std::string&
 /// Fails: InvalidArgument, as "script.json: steps[2].kind: ...", and as TFs do. Tested by:
 /// edit_test.py
 Result<EditScript> parseEditScript(std::string_view text, const std::string& sourceName,
-                                   const TransferByName& byName, const VolumeStatistics& data);
+                                   const TransferByName& byName, const TransferSubject& subject);
 
 } // namespace slabcast

@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 
 #include "platform/cli/commands.h"
-#include "platform/io/transfer_json.h"
+#include "platform/json/transfer_json.h"
 
 namespace slabcast {
 

@@ -6,7 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "core/volume/phantoms.h"
-#include "platform/io/transfer_json.h"
+#include "platform/json/transfer_json.h"
 
 namespace slabcast {
 

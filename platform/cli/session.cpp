@@ -12,7 +12,6 @@
 #include "core/volume/phantoms.h"
 #include "core/volume/resample.h"
 #include "platform/io/load_volume.h"
-#include "platform/io/transfer_json.h"
 
 namespace slabcast {
 
@@ -121,15 +120,6 @@ Result<LoadedScene> openScene(const InputOptions& options, Classification classi
     }
     return LoadedScene{Scene::create(std::move(*volume), format, maxFilterError(session, format)),
                        std::move(info), std::move(values)};
-}
-
-Result<TransferFunction> chooseTransferFunction(const std::string& tf, const Scene& scene,
-                                                Modality modality) {
-    if (tf.size() > 5 && tf.substr(tf.size() - 5) == ".json") {
-        return loadTransferFunction(tf);
-    }
-    return presetTransferFunction(tf.empty() ? defaultPresetName(modality, scene.statistics()) : tf,
-                                  scene.statistics());
 }
 
 std::int64_t peakHostBytes() {

@@ -68,10 +68,6 @@ Result<MemoryForecast> checkMemory(const VolumeInfo& info, TexelFormat format,
 Result<LoadedScene> openScene(const InputOptions& options, Classification classification,
                               const Session& session);
 
-/// `tf`: a preset's name, a JSON file, or empty for the default of the volume's modality and range.
-Result<TransferFunction> chooseTransferFunction(const std::string& tf, const Scene& scene,
-                                                Modality modality);
-
 /// Host memory at its peak so far, bytes (VmHWM).
 std::int64_t peakHostBytes();
 

@@ -12,7 +12,7 @@
 #include "platform/cli/skipbench_search.h"
 #include "platform/cli/skipbench_sizes.h"
 #include "platform/io/atomic_file.h"
-#include "platform/io/transfer_json.h"
+#include "platform/json/transfer_json.h"
 
 namespace slabcast {
 

@@ -11,7 +11,7 @@
 #include "core/skip/occupancy.h"
 #include "core/skip/proximity_cloud.h"
 #include "platform/cli/skipbench_race.h"
-#include "platform/io/transfer_json.h"
+#include "platform/json/transfer_json.h"
 
 namespace slabcast {
 

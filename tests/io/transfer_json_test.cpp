@@ -1,4 +1,4 @@
-#include "platform/io/transfer_json.h"
+#include "platform/json/transfer_json.h"
 
 #include <filesystem>
 #include <fstream>
@@ -20,8 +20,25 @@ std::string with(const std::string& piece, const std::string& replacement) {
     return text.replace(at, piece.size(), replacement);
 }
 
+/// 10,000 voxels: 9,980 in the first bin, 5 in the last.
+VolumeStatistics skewed() {
+    VolumeStatistics statistics;
+    statistics.min = -100.0;
+    statistics.max = 412.0; // bins 2 wide
+    statistics.histogram[0] = 9980;
+    statistics.histogram[99] = 15; // reaches 99.9 %; ends at -100 + 100 * 2
+    statistics.histogram[255] = 5;
+    return statistics;
+}
+
+const VolumeStatistics kSkewed = skewed();
+
+Result<TransferFunction> parsed(const std::string& text, std::string_view unit = "") {
+    return parseTransferFunction(text, "bone.json", {kSkewed, unit});
+}
+
 TEST(TransferJson, everyFieldIsTaken) {
-    const Result<TransferFunction> tf = parseTransferFunction(kValid, "bone.json");
+    const Result<TransferFunction> tf = parsed(kValid);
     ASSERT_TRUE(tf) << tf.error().detail;
     EXPECT_EQ(tf->name, "CT bone");
     EXPECT_EQ(tf->unit, "HU");
@@ -34,8 +51,7 @@ TEST(TransferJson, everyFieldIsTaken) {
 }
 
 TEST(TransferJson, unitAndOpacityUnitMayBeLeftOut) {
-    const Result<TransferFunction> tf =
-        parseTransferFunction(with(R"("unit": "HU", "opacityUnitMm": 2.0,)", ""), "x");
+    const Result<TransferFunction> tf = parsed(with(R"("unit": "HU", "opacityUnitMm": 2.0,)", ""));
     ASSERT_TRUE(tf) << tf.error().detail;
     EXPECT_EQ(tf->unit, "");
     EXPECT_EQ(tf->opacityUnitMm, 1.0);
@@ -60,6 +76,10 @@ TEST(TransferJson, everyErrorNamesItsPath) {
         {with("\"CT bone\"", "7"), "name: is number, expected a text"},
         {with("2.0", "0"), "opacityUnitMm: 0 is outside"},
         {with("2.0", "\"mm\""), "opacityUnitMm: is string"},
+        {with("HU", "Hu"), "unit: 'Hu' is not known; known are HU, and range"},
+        {with("\"HU\"", "7"), "unit: is number, expected a text"},
+        {with("\"HU\"", "\"HU\", \"rangeShare\": 0.9"), "rangeShare: is of the unit \"range\""},
+        {with("\"HU\"", "\"range\", \"rangeShare\": 1.5"), "rangeShare: 1.5 is outside 0.5..1"},
         {R"({"name": "a"})", "points: expected a list"},
         {R"({"name": "a", "points": []})", "points: expected a list"},
         {R"({"name": "a", "points": [3]})", "points[0]: is number, expected an object"},
@@ -70,7 +90,7 @@ TEST(TransferJson, everyErrorNamesItsPath) {
     };
     for (const auto& [text, part] : cases) {
         SCOPED_TRACE(text);
-        const Result<TransferFunction> tf = parseTransferFunction(text, "bone.json");
+        const Result<TransferFunction> tf = parsed(text);
         ASSERT_FALSE(tf);
         EXPECT_EQ(tf.error().code, ErrorCode::InvalidTransferFunction);
         EXPECT_TRUE(tf.error().detail.starts_with("bone.json: ")) << tf.error().detail;
@@ -79,33 +99,57 @@ TEST(TransferJson, everyErrorNamesItsPath) {
     }
 }
 
+TEST(TransferJson, unitsThatAreKnown) {
+    for (const char* unit : {"HU", ""}) {
+        const Result<TransferFunction> tf = parsed(with("HU", unit), "K");
+        ASSERT_TRUE(tf) << tf.error().detail;
+        EXPECT_EQ(tf->unit, unit);
+    }
+    ASSERT_TRUE(parsed(with("HU", "K"), "K"));
+    EXPECT_EQ(parsed(with("HU", "K"), "K")->unit, "K");
+    const Result<TransferFunction> unknown = parsed(with("HU", "Pa"), "K");
+    ASSERT_FALSE(unknown);
+    EXPECT_NE(unknown.error().detail.find("known are HU, K, and range"), std::string::npos)
+        << unknown.error().detail;
+}
+
+/// kValid with values from 0 to 1.
+std::string relative(const std::string& entries) {
+    std::string text = with("\"HU\"", entries);
+    text.replace(text.find("150"), 3, "0.25");
+    return text.replace(text.find("700"), 3, "1");
+}
+
+TEST(TransferJson, valuesRelativeToTheDataAreLaidOverThem) {
+    const Result<TransferFunction> all = parsed(relative("\"range\""));
+    ASSERT_TRUE(all) << all.error().detail;
+    EXPECT_EQ(all->unit, "");
+    EXPECT_DOUBLE_EQ(all->points[0].value, -100.0 + 0.25 * 512.0);
+    EXPECT_DOUBLE_EQ(all->points[1].value, 412.0);
+    const Result<TransferFunction> most = parsed(relative("\"range\", \"rangeShare\": 0.999"));
+    ASSERT_TRUE(most) << most.error().detail;
+    EXPECT_DOUBLE_EQ(most->points[0].value, -100.0 + 0.25 * 200.0);
+    EXPECT_DOUBLE_EQ(most->points[1].value, 100.0);
+}
+
 TEST(TransferJson, filesAreRead) {
     const auto path = std::filesystem::temp_directory_path() / "slabcast_transfer_json_test.json";
     std::ofstream(path) << kValid;
-    EXPECT_TRUE(loadTransferFunction(path));
+    EXPECT_TRUE(loadTransferFunction(path, {kSkewed, ""}));
     std::ofstream(path) << "{";
-    EXPECT_EQ(loadTransferFunction(path).error().code, ErrorCode::InvalidTransferFunction);
+    EXPECT_EQ(loadTransferFunction(path, {kSkewed, ""}).error().code,
+              ErrorCode::InvalidTransferFunction);
     std::filesystem::remove(path);
-    EXPECT_EQ(loadTransferFunction(path).error().code, ErrorCode::FileNotFound);
-    EXPECT_EQ(loadTransferFunction(path.parent_path()).error().code, ErrorCode::FileUnreadable);
-}
-
-/// 10,000 voxels: 9,990 in the first bin, 10 in the last.
-VolumeStatistics skewed() {
-    VolumeStatistics statistics;
-    statistics.min = -100.0;
-    statistics.max = 412.0; // bins 2 wide
-    statistics.histogram[0] = 9980;
-    statistics.histogram[99] = 15; // reaches 99.9 %; ends at -100 + 100 * 2
-    statistics.histogram[255] = 5;
-    return statistics;
+    EXPECT_EQ(loadTransferFunction(path, {kSkewed, ""}).error().code, ErrorCode::FileNotFound);
+    EXPECT_EQ(loadTransferFunction(path.parent_path(), {kSkewed, ""}).error().code,
+              ErrorCode::FileUnreadable);
 }
 
 TEST(Presets, allAreValidAndShowSomething) {
     ASSERT_EQ(presetNames(), (std::vector<std::string>{"angio", "ct-bone", "ct-bone-skin",
                                                        "ct-lung", "gap", "linear", "mr"}));
     for (const std::string& name : presetNames()) {
-        const Result<TransferFunction> tf = presetTransferFunction(name, skewed());
+        const Result<TransferFunction> tf = presetTransferFunction(name, kSkewed);
         ASSERT_TRUE(tf) << tf.error().detail;
         EXPECT_EQ(tf->unit, name.starts_with("ct-") ? "HU" : "") << name;
         EXPECT_EQ(tf->points.front().opacity, 0.0) << name;
@@ -114,12 +158,29 @@ TEST(Presets, allAreValidAndShowSomething) {
 }
 
 TEST(Presets, relativeOnesAreLaidOverTheData) {
-    const TransferFunction linear = *presetTransferFunction("linear", skewed());
+    const TransferFunction linear = *presetTransferFunction("linear", kSkewed);
     EXPECT_DOUBLE_EQ(linear.points.front().value, -100.0);
     EXPECT_DOUBLE_EQ(linear.points.back().value, 412.0);
-    EXPECT_DOUBLE_EQ(presetTransferFunction("angio", skewed())->points.back().value, 412.0);
-    EXPECT_DOUBLE_EQ(presetTransferFunction("mr", skewed())->points.back().value, 100.0);
-    EXPECT_DOUBLE_EQ(presetTransferFunction("ct-bone", skewed())->points.front().value, 240.0);
+    EXPECT_DOUBLE_EQ(presetTransferFunction("angio", kSkewed)->points.back().value, 412.0);
+    EXPECT_DOUBLE_EQ(presetTransferFunction("mr", kSkewed)->points.back().value, 100.0);
+    EXPECT_DOUBLE_EQ(presetTransferFunction("ct-bone", kSkewed)->points.front().value, 240.0);
+}
+
+/// The very same numbers, so the very same picture.
+TEST(Presets, theirFilesSayTheSame) {
+    const std::filesystem::path folder = SLABCAST_PRESET_FOLDER;
+    for (const std::string& name : presetNames()) {
+        const TransferFunction preset = *presetTransferFunction(name, kSkewed);
+        const Result<TransferFunction> file =
+            loadTransferFunction(folder / (name + ".json"), {kSkewed, ""});
+        ASSERT_TRUE(file) << file.error().detail;
+        ASSERT_EQ(file->points.size(), preset.points.size());
+        for (std::size_t k = 0; k < preset.points.size(); ++k) {
+            EXPECT_EQ(file->points[k].value, preset.points[k].value) << name;
+            EXPECT_EQ(file->points[k].color, preset.points[k].color) << name;
+            EXPECT_EQ(file->points[k].opacity, preset.points[k].opacity) << name;
+        }
+    }
 }
 
 TEST(Presets, constantDataKeepThePointsInOrder) {
@@ -134,7 +195,7 @@ TEST(Presets, constantDataKeepThePointsInOrder) {
 }
 
 TEST(Presets, unknownNameListsTheKnown) {
-    const Result<TransferFunction> tf = presetTransferFunction("bones", skewed());
+    const Result<TransferFunction> tf = presetTransferFunction("bones", kSkewed);
     ASSERT_FALSE(tf);
     EXPECT_EQ(tf.error().code, ErrorCode::InvalidArgument);
     EXPECT_NE(tf.error().detail.find("ct-bone"), std::string::npos);

@@ -34,6 +34,7 @@ tl::unexpected<Complaint> complain(std::string at, std::string what);
 std::string said(const Complaint& complaint);
 
 std::string inside(const std::string& at, std::string_view key); // path of a member
+std::string element(const std::string& at, std::size_t index);   // path of a list's entry
 
 Checked<void> checkKeys(const nlohmann::json& object, const std::string& at,
                         std::initializer_list<const char*> known);

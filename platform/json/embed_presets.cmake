@@ -1,5 +1,5 @@
 # Writes OUT, a C++ source that defines slabcast::presetTexts(): preset name -> text of every file in PRESETS.
-set(text "// Generated from assets/transfer_functions/. Do not edit.\n#include \"platform/io/preset_texts.h\"\n\n")
+set(text "// Generated from assets/transfer_functions/. Do not edit.\n#include \"platform/json/preset_texts.h\"\n\n")
 string(APPEND text "namespace slabcast {\n\nconst std::map<std::string, std::string>& presetTexts() {\n")
 string(APPEND text "    static const std::map<std::string, std::string> texts = {\n")
 foreach(preset IN LISTS PRESETS)

@@ -1,4 +1,4 @@
-#include "platform/io/json_checks.h"
+#include "platform/json/json_checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+#include "core/base/number_text.h"
 
 namespace slabcast {
 
@@ -32,18 +31,25 @@ std::string said(const Complaint& complaint) {
 }
 
 std::string inside(const std::string& at, std::string_view key) {
-    return at.empty() ? std::string(key) : fmt::format("{}.{}", at, key);
+    return at.empty() ? std::string(key) : at + "." + std::string(key);
+}
+
+std::string element(const std::string& at, std::size_t index) {
+    return at + "[" + std::to_string(index) + "]";
 }
 
 Checked<void> checkKeys(const json& object, const std::string& at,
                         std::initializer_list<const char*> known) {
     if (!object.is_object()) {
-        return complain(at, fmt::format("is {}, expected an object", object.type_name()));
+        return complain(at, std::string("is ") + object.type_name() + ", expected an object");
     }
     for (const auto& entry : object.items()) {
         if (std::find(known.begin(), known.end(), entry.key()) == known.end()) {
-            return complain(inside(at, entry.key()),
-                            fmt::format("unknown key; known are {}", fmt::join(known, ", ")));
+            std::string all;
+            for (const char* key : known) {
+                all += all.empty() ? key : std::string(", ") + key;
+            }
+            return complain(inside(at, entry.key()), "unknown key; known are " + all);
         }
     }
     return {};
@@ -51,11 +57,12 @@ Checked<void> checkKeys(const json& object, const std::string& at,
 
 Checked<double> number(const json& value, const std::string& at, JsonRange range) {
     if (!value.is_number()) {
-        return complain(at, fmt::format("is {}, expected a number", value.type_name()));
+        return complain(at, std::string("is ") + value.type_name() + ", expected a number");
     }
     const double x = value.get<double>();
     if (!(x >= range.low && x <= range.high)) {
-        return complain(at, fmt::format("{} is outside {}..{}", x, range.low, range.high));
+        return complain(at, numberText(x) + " is outside " + numberText(range.low) + ".." +
+                                numberText(range.high));
     }
     return x;
 }
@@ -71,7 +78,7 @@ Checked<int> integerAt(const json& object, const std::string& at, const char* ke
                        JsonRange range) {
     return numberAt(object, at, key, range).and_then([&](double x) -> Checked<int> {
         if (x != std::floor(x)) {
-            return complain(inside(at, key), fmt::format("{} is no whole number", x));
+            return complain(inside(at, key), numberText(x) + " is no whole number");
         }
         return static_cast<int>(x);
     });
@@ -83,7 +90,8 @@ Checked<std::string> textAt(const json& object, const std::string& at, const cha
         return std::string();
     }
     if (!found->is_string()) {
-        return complain(inside(at, key), fmt::format("is {}, expected a text", found->type_name()));
+        return complain(inside(at, key),
+                        std::string("is ") + found->type_name() + ", expected a text");
     }
     return found->get<std::string>();
 }
@@ -92,22 +100,20 @@ Result<json> parseJson(std::string_view text, std::string_view sourceName, Error
     try {
         return json::parse(text);
     } catch (const json::exception& exception) {
-        return fail(code, fmt::format("{}: {}; correct the JSON there", sourceName,
-                                      withoutTag(exception.what())));
+        return fail(code, std::string(sourceName) + ": " + withoutTag(exception.what()) +
+                              "; correct the JSON there");
     }
 }
 
 Result<std::string> readText(const std::string& path, const std::string& what) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) {
-        return fail(ErrorCode::FileNotFound,
-                    fmt::format("{}: no such {}; check the path", path, what));
+        return fail(ErrorCode::FileNotFound, path + ": no such " + what + "; check the path");
     }
     std::ifstream file(path, std::ios::binary);
     if (!file || std::filesystem::is_directory(path, ignored)) {
-        return fail(
-            ErrorCode::FileUnreadable,
-            fmt::format("{}: cannot be read; check that it is a file and its permissions", path));
+        return fail(ErrorCode::FileUnreadable,
+                    path + ": cannot be read; check that it is a file and its permissions");
     }
     return std::string{std::istreambuf_iterator<char>(file), {}};
 }

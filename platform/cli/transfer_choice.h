@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "core/volume/volume.h"
+#include "platform/json/transfer_json.h"
+
+namespace slabcast {
+
+/// `tf`: a preset's name, a JSON file, or empty for the default of the volume's modality and range.
+/// A line on stderr says where its unit is not the volume's: the picture may be right all the same.
+/// Fails: as presetTransferFunction() and loadTransferFunction().
+Result<TransferFunction> chooseTransferFunction(const std::string& tf,
+                                                const TransferSubject& subject, Modality modality);
+
+} // namespace slabcast
