@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 
 #include "core/gl/api.h"
 
@@ -65,15 +66,17 @@ Result<Caps> capsFrom(DeviceStrings strings, const std::vector<std::string>& mas
     caps.driver = std::move(strings.version);
     caps.extensions = std::move(strings.extensions);
     std::erase_if(caps.extensions, [&](const std::string& extension) {
-        return std::ranges::find(maskedExtensions, extension) != maskedExtensions.end();
+        return std::find(maskedExtensions.begin(), maskedExtensions.end(), extension) !=
+               maskedExtensions.end();
     });
-    std::ranges::sort(caps.extensions);
+    std::sort(caps.extensions.begin(), caps.extensions.end());
     for (const ExtensionFlag& row : kFlags) {
-        caps.*row.flag |= std::ranges::binary_search(caps.extensions, std::string(row.extension));
+        caps.*row.flag |= std::binary_search(caps.extensions.begin(), caps.extensions.end(),
+                                             std::string(row.extension));
     }
-    caps.isSoftware = std::ranges::any_of(kSoftwareRenderers, [&](const char* name) {
-        return caps.renderer.find(name) != std::string::npos;
-    });
+    caps.isSoftware = std::any_of(
+        std::begin(kSoftwareRenderers), std::end(kSoftwareRenderers),
+        [&](const char* name) { return caps.renderer.find(name) != std::string::npos; });
     return caps;
 }
 

@@ -72,7 +72,8 @@ double worstFetchError(std::span<const FetchSample> samples) {
 }
 
 const TexelFormatTest* find(std::span<const TexelFormatTest> tests, TexelFormat format) {
-    const auto at = std::ranges::find(tests, format, &TexelFormatTest::format);
+    const auto at = std::find_if(tests.begin(), tests.end(),
+                                 [&](const auto& test) { return test.format == format; });
     return at == tests.end() ? nullptr : &*at;
 }
 

@@ -85,7 +85,7 @@ std::vector<Code> pickOfSlab(const TexelCodes& codes, int edge, glm::ivec3 leave
     const auto perSlice = std::int64_t(leaves.x) * leaves.y;
     const int first = voxelsNearLeaf(slab.first, edge, dims.z).first;
     const int end = voxelsNearLeaf(slab.end - 1, edge, dims.z).end;
-    std::vector<Code> slices((end - first) * perSlice);
+    std::vector<Code> slices(std::size_t((end - first) * perSlice));
     RowOfLeaves along(dims.x, edge, leaves.x, pick);
     Code* row = slices.data();
     for (int z = first; z < end; ++z) {
@@ -95,7 +95,7 @@ std::vector<Code> pickOfSlab(const TexelCodes& codes, int edge, glm::ivec3 leave
             along.pick(row);
         }
     }
-    std::vector<Code> picked((slab.end - slab.first) * perSlice);
+    std::vector<Code> picked(std::size_t((slab.end - slab.first) * perSlice));
     for (int z = slab.first; z < slab.end; ++z) {
         const Span near = voxelsNearLeaf(z, edge, dims.z);
         pickOfRows(slices.data(), perSlice, {near.first - first, near.end - first}, pick,
@@ -107,13 +107,13 @@ std::vector<Code> pickOfSlab(const TexelCodes& codes, int edge, glm::ivec3 leave
 Result<OctreeLevel> rangesOfLeaves(const TexelCodes& codes, int edge, const CancelToken* cancel) {
     const glm::ivec3 leaves = blocksOf(codes.dims, edge);
     const auto perSlice = std::int64_t(leaves.x) * leaves.y;
-    OctreeLevel level{leaves, std::vector<std::uint32_t>(leaves.z * perSlice)};
+    OctreeLevel level{leaves, std::vector<std::uint32_t>(std::size_t(leaves.z * perSlice))};
     const auto reduceSlab = [&](std::int64_t begin, std::int64_t end) {
         const Span slab{int(begin), int(end)};
         const std::vector<Code> least = pickOfSlab(codes, edge, leaves, slab, kLesser);
         const std::vector<Code> greatest = pickOfSlab(codes, edge, leaves, slab, kGreater);
         std::transform(least.begin(), least.end(), greatest.begin(),
-                       level.words.begin() + begin * perSlice, [](Code low, Code high) {
+                       level.words.data() + begin * perSlice, [](Code low, Code high) {
                            return NodeRange{low, high}.word();
                        });
     };

@@ -31,12 +31,12 @@ Octree derivedOctree(const Octree& minMax, Octree shape, Write write) {
     const int perNode = shape.wordsPerNode();
     for (const OctreeLevel& from : minMax.levels) {
         OctreeLevel to{from.nodes, std::vector<std::uint32_t>(from.words.size() * perNode)};
-        parallelFor(std::int64_t(from.words.size()), 1 << 15,
-                    [&](std::int64_t begin, std::int64_t end) {
-                        for (std::int64_t n = begin; n < end; ++n) {
-                            write(NodeRange::of(from.words[n]), to.words.data() + n * perNode);
-                        }
-                    });
+        parallelFor(
+            std::int64_t(from.words.size()), 1 << 15, [&](std::int64_t begin, std::int64_t end) {
+                for (std::int64_t n = begin; n < end; ++n) {
+                    write(NodeRange::of(from.words[std::size_t(n)]), to.words.data() + n * perNode);
+                }
+            });
         shape.levels.push_back(std::move(to));
     }
     return shape;

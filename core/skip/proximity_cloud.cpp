@@ -153,11 +153,12 @@ void transformPlanes(std::uint32_t* squared, const AxisLines& axis, std::int64_t
                      std::int64_t firstPlane, std::int64_t endPlane) {
     constexpr std::int64_t kBundle = 16;
     LineTransform transform(int(axis.length), step);
-    std::vector<std::uint32_t> bundle(kBundle * axis.length);
+    std::vector<std::uint32_t> bundle(std::size_t(kBundle * axis.length));
     const auto forEntries = [&](std::uint32_t* corner, std::int64_t lines, auto&& visit) {
         for (std::int64_t i = 0; i < axis.length; ++i) {
             for (std::int64_t l = 0; l < lines; ++l) {
-                visit(corner[i * axis.stride + l * axis.lineStride], bundle[l * axis.length + i]);
+                visit(corner[i * axis.stride + l * axis.lineStride],
+                      bundle[std::size_t(l * axis.length + i)]);
             }
         }
     };
@@ -179,7 +180,7 @@ class SquaredGaps {
 public:
     SquaredGaps(ProximityUnits units, glm::ivec3 blocks)
         : units_(units), blocks_(blocks), perSlice_(std::int64_t(blocks.x) * blocks.y),
-          squared_(new std::uint32_t[perSlice_ * blocks.z]) {}
+          squared_(new std::uint32_t[std::size_t(perSlice_ * blocks.z)]) {}
 
     /// From bytes that are 0 where occupied: gaps along x and y.
     void withinSlices(const std::uint8_t* counts, std::int64_t begin, std::int64_t end) {
@@ -194,7 +195,7 @@ public:
     /// Of free blocks one more than the whole quanta of the length.
     void write(std::uint8_t* counts, std::int64_t begin, std::int64_t end) const {
         for (std::int64_t i = begin * perSlice_; i < end * perSlice_; ++i) {
-            const int whole = units_.wholeQuanta(squared_[i]);
+            const int whole = units_.wholeQuanta(squared_[std::size_t(i)]);
             counts[i] = counts[i] == 0 ? 0 : std::uint8_t(1 + whole);
         }
     }

@@ -34,8 +34,8 @@ std::vector<Partial> reduceRuns(std::span<const T> voxels, const Body& body) {
     const auto count = static_cast<std::int64_t>(voxels.size());
     std::vector<Partial> partials(static_cast<std::size_t>((count + kGrain - 1) / kGrain));
     parallelFor(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
-        partials[static_cast<std::size_t>(begin / kGrain)] =
-            body(voxels.subspan(static_cast<std::size_t>(begin), end - begin));
+        partials[static_cast<std::size_t>(begin / kGrain)] = body(
+            voxels.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin)));
     });
     return partials;
 }

@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
+#include "core/base/bits.h"
 #include "core/base/parallel.h"
 #include "core/volume/texel_codec.h"
 #include "core/volume/texels.h"
@@ -95,12 +95,12 @@ FloatCoder coderFor(const Texels& texels, FloatCodec codec) {
 
 /// Floats as integers in the same order, and back.
 std::int64_t orderOf(float value) {
-    const auto bits = std::bit_cast<std::uint32_t>(value);
+    const auto bits = bitsAs<std::uint32_t>(value);
     const std::int64_t magnitude = bits & 0x7fffffffU;
     return (bits >> 31) != 0 ? -magnitude : magnitude;
 }
 float floatAt(std::int64_t order) {
-    const auto magnitude = std::bit_cast<float>(static_cast<std::uint32_t>(std::abs(order)));
+    const auto magnitude = bitsAs<float>(static_cast<std::uint32_t>(std::abs(order)));
     return order < 0 ? -magnitude : magnitude;
 }
 
@@ -116,7 +116,7 @@ TexelCodes encodeCodes(const Texels& texels) {
         result.codes.resize(texels.data.size() / bytesPerTexel(texels.format));
         parallelFor(static_cast<std::int64_t>(result.codes.size()), kGrain,
                     [&](std::int64_t begin, std::int64_t end) {
-                        std::transform(data + begin, data + end, result.codes.begin() + begin,
+                        std::transform(data + begin, data + end, result.codes.data() + begin,
                                        [&](auto texel) { return coder.code(texel); });
                     });
         for (std::size_t code = 0; code < coder.kCount; ++code) {

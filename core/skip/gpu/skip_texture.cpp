@@ -34,7 +34,8 @@ void pack(std::span<const Value> values, glm::ivec3 size, const SkipLayout& layo
     const Value* row = values.data();
     for (std::int64_t rows = std::int64_t(size.y) * size.z; rows > 0; --rows) {
         if (int(sizeof(Value)) * 8 == std::min(layout.bits, 32)) {
-            std::memcpy(to, row, rowWords * sizeof(Value)); // lies in memory as it should
+            std::memcpy(to, row,
+                        std::size_t(rowWords) * sizeof(Value)); // lies in memory as it should
         } else {
             for (int x = 0; x < size.x; ++x) {
                 to[x / layout.perTexel] |= std::uint32_t(row[x])
@@ -47,7 +48,7 @@ void pack(std::span<const Value> values, glm::ivec3 size, const SkipLayout& layo
 }
 
 std::vector<std::uint32_t> noWords(const SkipLayout& layout) {
-    return std::vector<std::uint32_t>(layout.texelCount() * layout.wordsPerTexel());
+    return std::vector<std::uint32_t>(std::size_t(layout.texelCount() * layout.wordsPerTexel()));
 }
 
 } // namespace
@@ -100,8 +101,8 @@ Result<void> uploadSlices(const SkipTexture& into, const FreeLengths& lengths, i
     const SkipLayout layout = freeLengthLayout(size);
     const std::span<const std::uint8_t> counts(lengths.counts);
     std::vector<std::uint32_t> words = noWords(layout);
-    pack(counts.subspan(begin * perSlice, size.z * perSlice), size, layout, layout.levels.front(),
-         words.data());
+    pack(counts.subspan(std::size_t(begin * perSlice), std::size_t(size.z * perSlice)), size,
+         layout, layout.levels.front(), words.data());
     return fillSlices(kFreeLengths, into.texture, texelLayoutOf(layout), {layout.texels, begin},
                       words.data());
 }

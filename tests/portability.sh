@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# Compiles all of core and perf by one compiler, with every warning an error, and writes nothing.
+# usage: tests/portability.sh COMPILER [FLAG...]        compilers: gcc clang libc++ emscripten
+# Exit status: 0 where all compile, 1 where one does not, 77 where the compiler is not installed. BUILD: folder for
+# what Emscripten keeps, build/ if not set.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+skip() {
+    echo "skipped: $1; platform/packages.sh compilers installs it"
+    exit 77
+}
+
+# Of several names for one program, the first that is there.
+firstOf() {
+    local name
+    for name in "$@"; do
+        command -v "$name" && return
+    done
+    return 1
+}
+
+compiles() { "$@" -x c++ -std=c++20 -fsyntax-only - <<<'#include <vector>' >/dev/null 2>&1; }
+
+main() {
+    local which=${1:?a compiler: gcc clang libc++ emscripten}
+    shift
+    local command
+    case $which in
+    gcc) command=("$(firstOf g++-12 g++)") || skip "no g++" ;;
+    clang) command=("$(firstOf clang++-14 clang++)") || skip "no clang++" ;;
+    libc++)
+        command=("$(firstOf clang++-14 clang++)" -stdlib=libc++ -fno-exceptions -fno-rtti) || skip "no clang++"
+        compiles "${command[@]}" || skip "no libc++"
+        ;;
+    emscripten)
+        command=("$(firstOf em++)" -pthread -fno-exceptions -fno-rtti) || skip "no em++"
+        headersForEmscripten
+        ;;
+    *)
+        echo "portability: no compiler '$which'" >&2
+        exit 2
+        ;;
+    esac
+    echo "$which: $("${command[0]}" --version | head -n 1)"
+    # All that fail are shown: xargs goes on and fails at the end. An order that is not the folders' evens the batches.
+    find core perf -name '*.cpp' -print0 | sort -zR --random-source=<(yes) |
+        xargs -0 -n 8 -P "$(nproc)" "${command[@]}" -std=c++20 -fsyntax-only -I. "$@" -Werror
+    echo "$which: $(find core perf -name '*.cpp' | wc -l) sources compile"
+}
+
+# Emscripten sees no header of the system's own, so the header-only libraries are put where it looks. Its cache as
+# Debian installs it can only be read, so a copy of our own is made before compilers run side by side.
+headersForEmscripten() {
+    local folder=${BUILD:-build}/emscripten library
+    mkdir -p "$folder/include"
+    folder=$(cd "$folder" && pwd)
+    for library in glm tl nlohmann; do
+        ln -sfn "/usr/include/$library" "$folder/include/$library"
+    done
+    export EM_CACHE=$folder/cache EM_FROZEN_CACHE=
+    command+=(-isystem "$folder/include")
+    compiles "${command[@]}" || skip "em++ compiles nothing"
+}
+
+main "$@"
