@@ -5,10 +5,11 @@ include(CMakePackageConfigHelpers)
 
 set(packageDir ${CMAKE_INSTALL_LIBDIR}/cmake/Slabcast)
 set(headerRoot ${CMAKE_INSTALL_INCLUDEDIR}/slabcast)
-set(headers_core core)
-set(headers_egl platform/egl)
-set(headers_json platform/json)
-set(headers_io platform/io)
+# What applications include; with it comes what these name.
+set(headers_core core/slabcast.h)
+set(headers_egl platform/egl/egl_context.h)
+set(headers_json platform/json/transfer_json.h)
+set(headers_io platform/io/load_volume.h platform/io/save_image.h platform/io/save_nrrd.h)
 
 foreach(component IN ITEMS core egl json io)
     if(NOT TARGET slabcast_${component})
@@ -18,10 +19,11 @@ foreach(component IN ITEMS core egl json io)
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
     install(EXPORT Slabcast_${component} NAMESPACE Slabcast::
         FILE Slabcast_${component}.cmake DESTINATION ${packageDir})
-    # Includes keep their form: "core/volume/volume.h" here and there.
-    install(DIRECTORY ${headers_${component}}/ DESTINATION ${headerRoot}/${headers_${component}}
-        FILES_MATCHING PATTERN "*.h" PATTERN "itk_*" EXCLUDE # what includes ITK stays inside
-        PATTERN "json_checks.h" EXCLUDE PATTERN "preset_texts.h" EXCLUDE) # and nlohmann-json, and what is generated
+    install(CODE "
+        set(SOURCE \"${PROJECT_SOURCE_DIR}\")
+        set(INCLUDE_DIR \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${headerRoot}\")
+        set(HEADERS ${headers_${component}})
+        include(\"${PROJECT_SOURCE_DIR}/cmake/install_headers.cmake\")")
 endforeach()
 
 if(TARGET slabcast_images)

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/base/stopwatch.h"
+#include "core/draw/renderer.h"
 #include "core/gl/api.h"
 #include "core/gl/color_targets.h"
 #include "core/gl/state_guard.h"

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "core/draw/renderer.h"
+#include "core/draw/renderer_api.h"
 
 namespace slabcast {
 

@@ -6,6 +6,7 @@
 #include "core/draw/box_cache.h"
 #include "core/draw/layer_compositor.h"
 #include "core/draw/plane_blending.h"
+#include "core/draw/prepare_check.h"
 #include "core/draw/program_cache.h"
 #include "core/draw/saturation_marks.h"
 #include "core/draw/stack_drawer.h"
@@ -21,17 +22,6 @@ namespace {
 
 GLenum glFormat(TargetFormat format) {
     return format == TargetFormat::Rgba8 ? GL_RGBA8 : GL_RGBA16F;
-}
-
-/// A plan is for one look, and for the skip structure that serves: its variant says how texels are
-/// classified, lit and blended, and what the structure's texture holds.
-bool fits(const FramePlan& plan, const Scene& scene) {
-    const Look& look = scene.look();
-    const SkipOptions& built = scene.skip().options;
-    const bool skips = plan.skip == SkipStructure::None ||
-                       (plan.skip == built.structure && plan.variant.skip == formOf(built));
-    return skips && plan.variant.classification == look.classification &&
-           plan.space == look.space && (look.shading.has_value() || !plan.variant.shaded);
 }
 
 /// To a target that is not in the space, and to an sRGB format, which encodes by itself.
@@ -64,7 +54,10 @@ double longestLayerMm(const FramePlan& plan, const Frustum& f) {
 } // namespace
 
 struct Renderer::State {
-    gl::Caps caps;
+    explicit State(Device its) : device(std::move(its)), caps(device.caps()) {}
+
+    Device device;
+    const gl::Caps& caps;
     GpuScene textures;
     StackDrawer drawer;
     LayerCompositor compositor;
@@ -129,13 +122,48 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
 
 Result<Renderer> Renderer::create(const gl::Caps& caps) {
-    auto state = std::make_unique<State>();
-    state->caps = caps;
+    return create(Device(caps, {}));
+}
+
+Result<Renderer> Renderer::create(const Device& device) {
+    auto state = std::make_unique<State>(device);
     const gl::StateGuard guard;
     if (Result<void> done = state->createFixed(); !done) {
         return tl::unexpected(done.error());
     }
     return Renderer(std::move(state));
+}
+
+Result<void> Renderer::provide(Scene& scene, const Needs& needs) {
+    const bool onGpu =
+        needs.builder == SkipBuilder::Gpu ||
+        (needs.builder == SkipBuilder::Auto && !state_->device.quirks().computeIsSlow);
+    if (!onGpu || needs.skip.structure == SkipStructure::None || scene.provides(needs)) {
+        return scene.provide(needs);
+    }
+    Needs allElse = needs;
+    allElse.skip = noSkip().options;
+    Result<void> built =
+        check(needs.skip).and_then([&] { return scene.provide(allElse); }).and_then([&] {
+            return buildSkip(scene, needs.skip);
+        });
+    if (built || built.error().code != ErrorCode::DeviceUnsupported) {
+        return built;
+    }
+    state_->device.log(built.error().detail);
+    return scene.provide(needs);
+}
+
+Result<FramePlan> Renderer::plan(Scene& scene, const Settings& settings,
+                                 std::span<const RatioMeasurement> measurements) {
+    return provide(scene, needsOf(settings)).and_then([&] {
+        return slabcast::plan(scene.facts(), settings, state_->caps, measurements);
+    });
+}
+
+Result<FramePlan> Renderer::plan(const LiveScene& scene, const Settings& settings,
+                                 std::span<const RatioMeasurement> measurements) const {
+    return slabcast::plan(scene.scene().facts(), settings, state_->caps, measurements);
 }
 
 Result<void> Renderer::buildSkip(Scene& scene, const SkipOptions& options) {
@@ -169,6 +197,9 @@ Result<void> Renderer::buildSkip(Scene& scene, const SkipOptions& options) {
 
 Result<void> Renderer::prepare(const Scene& scene, const FramePlan& plan,
                                std::span<const ViewTarget> views) {
+    if (Result<void> ok = checkPlan(plan, scene).and_then([&] { return checkViews(views); }); !ok) {
+        return ok;
+    }
     if (plan.drawsNothing) {
         const gl::StateGuard guard;
         if (scene.live() == nullptr) { // else the TF may be another one in the next frame
@@ -176,12 +207,6 @@ Result<void> Renderer::prepare(const Scene& scene, const FramePlan& plan,
             state_->counters = {};
         }
         return state_->textures.update(scene, plan, state_->caps);
-    }
-    if (!fits(plan, scene)) {
-        return fail(
-            ErrorCode::InvalidArgument,
-            "plan and scene differ in classification, shading, space or skip structure: plan "
-            "anew, or set a look for the settings that the plan was made from");
     }
     const gl::StateGuard guard;
     if (Result<void> done = state_->createFixed(); !done) {
@@ -285,14 +310,18 @@ void Renderer::State::drawLayer(const Scene& scene, const FramePlan& plan, const
 
 Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
                             std::span<const ViewTarget> views) {
+    if (Result<void> ok = checkPlan(plan, scene).and_then([&] { return checkViews(views); }); !ok) {
+        return ok;
+    }
     if (plan.drawsNothing) {
         return {};
     }
     const gl::StateGuard guard;
     const gl::Program* program = state_->programs.find(plan.variant);
-    SLABCAST_EXPECTS(program != nullptr, plan.variant.unroll);
-    SLABCAST_EXPECTS(fits(plan, scene) && state_->textures.serve(scene, plan),
-                     scene.lookGeneration());
+    if (program == nullptr || !state_->textures.serve(scene, plan)) {
+        return fail(ErrorCode::InvalidArgument,
+                    "scene and plan were not prepared: call prepare() with them first");
+    }
     for (const ViewTarget& target : views) {
         if (!isEmpty(target.viewport) && !state_->servesView(scene, plan, target)) {
             return fail(ErrorCode::InvalidArgument,
@@ -381,6 +410,12 @@ Result<std::vector<PixelWork>> Renderer::workPerPixel(const Scene& scene, const 
         return fail(ErrorCode::DeviceUnsupported,
                     "work cannot be counted on this device: it does not blend float32 "
                     "targets (GL_EXT_float_blend)");
+    }
+    if (Result<void> ok = checkPlan(plan, scene).and_then([&] {
+            return checkViews({&target, 1});
+        });
+        !ok) {
+        return tl::unexpected(ok.error());
     }
     const Viewport& v = target.viewport;
     std::vector<PixelWork> work(static_cast<std::size_t>(std::max(v.width, 0)) *

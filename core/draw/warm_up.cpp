@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/draw/renderer.h"
 #include "core/gl/color_targets.h"
 #include "core/gl/state_guard.h"
 

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "core/draw/renderer.h"
+#include "core/draw/renderer_api.h"
 
 namespace slabcast {
 

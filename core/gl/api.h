@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/gl/functions.h"
+#include "core/gl/get_proc.h"
 
 /// The GL entry points as function pointers, named as in GL without its prefix:
 /// gl::DrawArraysInstanced(...). One set per process: contexts of different drivers cannot be
@@ -18,9 +19,6 @@ namespace slabcast::gl {
 #define SLABCAST_GL_DECLARE(name, spelling) inline PFNGL##spelling##PROC name = nullptr;
 SLABCAST_GL_FUNCTIONS(SLABCAST_GL_DECLARE)
 #undef SLABCAST_GL_DECLARE
-
-/// What the platform resolves names with (eglGetProcAddress and its like).
-using GetProc = void* (*)(const char*);
 
 /// Fills the pointers; call once with a context current, before anything else of slabcast::gl.
 /// Fails: DeviceUnsupported, with the name of the first core function that is missing.

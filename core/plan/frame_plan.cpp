@@ -339,10 +339,11 @@ struct Planner {
     }
 };
 
-/// Everything but the reasons. A new member does not compile until it is named here.
+/// Everything but what it was made from and why. A new member does not compile until it is named
+/// here.
 auto decided(const FramePlan& plan) {
-    const auto& [lattice, planes, layers, variant, skip, tight, format, space, alpha, order, marks,
-                 nothing, reasons] = plan;
+    const auto& [needs, look, lattice, planes, layers, variant, skip, tight, format, space, alpha,
+                 order, marks, nothing, reasons] = plan;
     return std::tie(lattice, planes, layers, variant, skip, tight, format, space, alpha, order,
                     marks, nothing);
 }
@@ -414,6 +415,8 @@ Result<FramePlan> plan(const SceneFacts& facts, const Settings& settings, const 
                         std::to_string(kUnrollLengths.back()) + ", or the loop form");
     }
     FramePlan& result = planner.plan;
+    result.needs = needsOf(settings);
+    result.look = facts.look;
     result.planes = ratio.planes;
     result.layersPerPlane = ratio.layersPerPlane;
     result.variant.unroll =

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/gl/caps.h"
+#include "core/plan/needs.h"
 #include "core/plan/settings.h"
 #include "core/plan/shader_variant.h"
 #include "core/transfer/transfer_function.h"
@@ -15,6 +16,7 @@ namespace slabcast {
 
 /// What a plan needs to know of the volume under its transfer function.
 struct SceneFacts {
+    int look = 0; // which look of which scene this is true of: Scene::lookGeneration()
     BoundingSphere sphere;
     double smallestVoxelEdgeMm = 1.0;
     bool exactField = false;
@@ -52,8 +54,11 @@ struct Reason {
 };
 
 /// Everything that a frame does, decided. Two pictures are of the same settings when their plans
-/// are equal: in everything but the reasons, which hold what was measured.
+/// are equal: in everything but what the plan is made from (needs, look) and the reasons, which
+/// hold what was measured.
 struct FramePlan {
+    Needs needs;  // what the settings ask to be built: needsOf()
+    int look = 0; // that it was made for: it draws no other
     Lattice lattice;
     int planes = 1;
     int layersPerPlane = 1;

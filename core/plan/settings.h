@@ -14,6 +14,8 @@ inline constexpr int kMaxTotalLayers = 1 << 20;
 /// What planes are blended into.
 enum class TargetFormat : std::uint8_t { Rgba8, Rgba16f };
 enum class SegmentForm : std::uint8_t { Auto, Unrolled, Loop };
+/// Where skip structures are built. Auto: on the GPU, unless its compute shaders run on the host.
+enum class SkipBuilder : std::uint8_t { Auto, Cpu, Gpu };
 /// Planes over what is there, or nearest first under what is gathered, in a layer of our own.
 enum class BlendOrder : std::uint8_t { BackToFront, FrontToBack };
 
@@ -24,6 +26,8 @@ const char* name(BlendOrder order);
 struct Settings {
     Classification classification = Classification::Post;
     std::optional<SkipStructure> skip;
+    SkipOptions skipOptions; // of the structure; its kind is what is built where `skip` is unset
+    SkipBuilder skipBuilder = SkipBuilder::Auto;
     LatticeKind lattice = LatticeKind::Planar;
     bool jitter = false;             // moves every ray's layers by up to half a layer
     double layerSpacingVoxels = 1.0; // of the smallest voxel edge

@@ -57,7 +57,7 @@ Result<void> checkSkip(const SceneFacts& facts, const Settings& settings) {
     }
     return fail(ErrorCode::InvalidArgument,
                 std::string("skip ") + name(asked) + " was asked for, but what was built is " +
-                    name(built) + ": set the look with skip options of that structure");
+                    name(built) + ": provide what needsOf() these settings says, then plan anew");
 }
 
 } // namespace

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "core/gl/api.h"
+
 namespace slabcast {
 
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/base/contract_hook.h"
-#include "core/gl/api.h"
 #include "core/gl/caps.h"
+#include "core/gl/get_proc.h"
 #include "core/scene/texel_format.h"
 
 namespace slabcast {

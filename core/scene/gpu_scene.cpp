@@ -191,6 +191,11 @@ Result<void> GpuScene::updateVolume(const Scene& scene, bool pre, int generation
         return {};
     }
     SLABCAST_EXPECTS(!pre || scene.classified() != nullptr, pre);
+    if (!pre && scene.texels().data.empty()) {
+        return fail(ErrorCode::InvalidArgument,
+                    "the volume's texture must be made, and the scene has let go of its texels "
+                    "(Scene::releaseTexels()): create it again from the volume");
+    }
     Result<void> done = pre ? keep(volume_, uploadClassified(scene.classified()->texels.data(),
                                                              scene.classified()->dims, caps))
                             : keep(volume_, uploadTexels(scene.texels(), caps));

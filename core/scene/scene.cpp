@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <functional>
 
 #include "core/skip/cell_visibility.h"
@@ -10,6 +11,37 @@ namespace slabcast {
 
 namespace {
 
+constexpr const char* kTexelsAreGone =
+    "this is made from the texels, which the scene has let go (Scene::releaseTexels()): create it "
+    "again from the volume";
+
+constexpr int kLeastTableSize = 4; // makeTable()'s
+
+Result<void> checkTableSize(int most) {
+    return most >= kLeastTableSize
+               ? Result<void>{}
+               : fail(ErrorCode::InvalidArgument,
+                      "a transfer table of at most " + std::to_string(most) +
+                          " texels holds nothing: " + std::to_string(kLeastTableSize) +
+                          " at least; take what Device::texturesFor() says");
+}
+
+Result<void> checkLight(const Look& look) {
+    const ShadingParameters s = look.shading.value_or(ShadingParameters{});
+    const double numbers[] = {s.ambient, s.diffuse, s.specular, s.shininess, s.gradientFloorPerMm};
+    if (!std::all_of(std::begin(numbers), std::end(numbers),
+                     [](double number) { return std::isfinite(number); })) {
+        return fail(ErrorCode::InvalidArgument,
+                    "shading holds what is no finite number: give ambient, diffuse, specular, "
+                    "shininess and gradientFloorPerMm");
+    }
+    const double length = glm::length(look.bakedLightDirection);
+    return std::isfinite(length) && length > 0.0
+               ? Result<void>{}
+               : fail(ErrorCode::InvalidArgument,
+                      "the baked light points nowhere: give a direction that is not zero");
+}
+
 int nextGeneration() {
     static std::atomic<int> last{0};
     return ++last;
@@ -17,143 +49,348 @@ int nextGeneration() {
 
 } // namespace
 
-Scene Scene::create(Volume volume, TexelFormat format, double filterErrorOfFullScale) {
-    Scene scene;
-    scene.volumeName_ = volume.name;
-    scene.geometry_ = volume.geometry;
-    scene.integerData_ = !isFloatingPoint(volume.type) && volume.rescaleSlope == 1.0;
-    scene.statistics_ = computeStatistics(volume);
-    scene.texels_ = std::make_shared<Texels>(encodeTexels(volume, scene.statistics_, format));
-    scene.texelsGeneration_ = nextGeneration();
-    scene.filterErrorSampled_ = filterErrorOfFullScale * fullScaleSampled(format);
-    return scene;
+struct Scene::State {
+    std::string volumeName;
+    VolumeGeometry geometry;
+    bool integerData = true;
+    VolumeStatistics statistics;
+    std::shared_ptr<const Texels> texels;
+    double filterErrorSampled = 0.0;
+    int maxTableSize = 0;
+    std::shared_ptr<const TexelCodes> codes; // made when the first skip structure is
+    Look look;
+    std::optional<Needs> provided; // but for the structure
+    TransferTable table;           // of no use beside a pre-integrated one
+    std::optional<PreintegratedTable> preintegrated;
+    std::optional<ClassifiedTexels> classified;
+    BuiltSkip skip = noSkip(); // while the scene is not edited
+    std::optional<LiveSkip> live;
+    int texelsGeneration = 0;
+    int lookGeneration = 0;
+
+    Result<void> provideLook(const Needs& needs);
+    void light();
+    void buildTable();
+    Result<void> needCodes();
+    const TransferTable& servingTable() const {
+        return preintegrated ? preintegrated->diagonal : table;
+    }
+    double defaultGradientFloorPerMm() const;
+    CellVisibility visibility() const; // of scalars. Contract: their codes were made
+};
+
+Scene::Scene(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Scene::Scene() : state_(std::make_unique<State>()) {}
+Scene::Scene(const Scene& other) : state_(std::make_unique<State>(*other.state_)) {}
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(const Scene& other) {
+    state_ = std::make_unique<State>(*other.state_);
+    return *this;
+}
+Scene& Scene::operator=(Scene&&) noexcept = default;
+Scene::~Scene() = default;
+
+Result<Scene> Scene::create(Volume volume, const TextureChoice& choice) {
+    if (Result<void> ok = checkTableSize(choice.maxTableSize); !ok) {
+        return tl::unexpected(ok.error());
+    }
+    auto state = std::make_unique<State>();
+    state->volumeName = volume.name;
+    state->geometry = volume.geometry;
+    state->integerData = !isFloatingPoint(volume.type) && volume.rescaleSlope == 1.0;
+    state->statistics = computeStatistics(volume);
+    state->texels =
+        std::make_shared<Texels>(encodeTexels(volume, state->statistics, choice.texels));
+    state->texelsGeneration = nextGeneration();
+    state->lookGeneration = nextGeneration();
+    state->filterErrorSampled = choice.filterErrorOfFullScale * fullScaleSampled(choice.texels);
+    state->maxTableSize = choice.maxTableSize;
+    return Scene(std::move(state));
 }
 
-Result<void> Scene::setLook(const Look& look, const SkipOptions& skip, int maxTableSize) {
-    Result<TransferFunction> tf = validated(look.tf);
+Result<Scene> Scene::create(Volume volume, const Device& device, bool exact) {
+    Result<Volume> valid = validated(std::move(volume));
+    if (!valid) {
+        return tl::unexpected(valid.error());
+    }
+    const TextureChoice choice = device.texturesFor(valid->type, computeStatistics(*valid), exact);
+    return create(std::move(*valid), choice);
+}
+
+Result<void> Scene::setLook(Look look) {
+    Result<TransferFunction> tf = validated(std::move(look.tf));
     if (!tf) {
         return tl::unexpected(tf.error());
     }
-    look_ = look;
-    look_.tf = std::move(*tf);
-    if (look_.shading && look_.shading->gradientFloorPerMm <= 0.0) {
-        look_.shading->gradientFloorPerMm = defaultGradientFloorPerMm();
+    if (Result<void> ok = checkLight(look); !ok) {
+        return ok;
     }
-    live_.reset();
-    lookGeneration_ = nextGeneration();
-    maxTableSize_ = maxTableSize;
-    buildTable();
-    classified_.reset();
-    if (look_.classification == Classification::Pre) {
-        ClassifySettings settings;
-        if (look_.shading) {
-            settings.light = BakedLight{look_.bakedLightDirection, *look_.shading};
-        }
-        classified_ = classify(*texels_, geometry_, table(), settings);
-    }
-    skip_ = noSkip();
-    return skip.structure == SkipStructure::None
-               ? Result<void>{}
-               : buildSkip([&](const SkipSource& s) { return slabcast::buildSkip(s, skip); });
+    look.tf = std::move(*tf);
+    state_->look = std::move(look);
+    state_->lookGeneration = nextGeneration();
+    state_->provided.reset();
+    state_->table = {};
+    state_->preintegrated.reset();
+    state_->classified.reset();
+    state_->skip = noSkip();
+    state_->live.reset();
+    return {};
 }
 
-void Scene::buildTable() {
-    const VolumeStatistics& s = statistics_;
-    if (look_.classification == Classification::Preintegrated) {
-        preintegrated_ = makePreintegratedTable(look_.tf, s.min, s.max, integerData_, look_.space,
-                                                std::min(maxTableSize_, kMaxPreintegratedSize));
-        table_ = {};
+Scene Scene::create(Volume volume, TexelFormat format, double filterErrorOfFullScale) {
+    return std::move(*create(std::move(volume), TextureChoice{format, filterErrorOfFullScale}));
+}
+
+Result<void> Scene::setLook(const Look& look, const SkipOptions& skip, int maxTableSize) {
+    if (Result<void> ok = checkTableSize(maxTableSize); !ok) {
+        return ok;
+    }
+    state_->maxTableSize = maxTableSize;
+    return setLook(look).and_then([&] {
+        return provide({look.classification, look.space, look.shading.has_value(), skip});
+    });
+}
+
+void Scene::State::buildTable() {
+    const VolumeStatistics& s = statistics;
+    if (provided->classification == Classification::Preintegrated) {
+        preintegrated = makePreintegratedTable(look.tf, s.min, s.max, integerData, provided->space,
+                                               std::min(maxTableSize, kMaxPreintegratedSize));
+        table = {};
     } else {
-        table_ = makeTable(look_.tf, s.min, s.max, integerData_, look_.space, maxTableSize_);
-        preintegrated_.reset();
+        table = makeTable(look.tf, s.min, s.max, integerData, provided->space, maxTableSize);
+        preintegrated.reset();
     }
 }
 
-void Scene::needCodes() {
-    if (!codes_) {
-        codes_ = std::make_shared<const TexelCodes>(encodeCodes(*texels_));
+/// Fills in what a lit look leaves open.
+void Scene::State::light() {
+    if (provided->shaded && !look.shading) {
+        look.shading.emplace();
+    }
+    if (look.shading && look.shading->gradientFloorPerMm <= 0.0) {
+        look.shading->gradientFloorPerMm = defaultGradientFloorPerMm();
     }
 }
 
-CellVisibility Scene::visibility() const {
-    return cellVisibility(*codes_, *texels_, table(), filterErrorSampled_);
+/// Table and texels as the needs say. Light belongs to the texels that it is baked into.
+Result<void> Scene::State::provideLook(const Needs& needs) {
+    const bool pre = needs.classification == Classification::Pre;
+    if (provided && provided->classification == needs.classification &&
+        provided->space == needs.space && (!pre || provided->shaded == needs.shaded)) {
+        provided->shaded = needs.shaded;
+        light();
+        return {};
+    }
+    if (look.tf.points.empty()) {
+        return fail(ErrorCode::InvalidArgument, "no look was set: call Scene::setLook() first");
+    }
+    if (pre && texels->data.empty()) {
+        return fail(ErrorCode::InvalidArgument, kTexelsAreGone);
+    }
+    classified.reset(); // before the next is made: two may not fit
+    skip = noSkip();
+    lookGeneration = nextGeneration();
+    provided = needs;
+    look.classification = needs.classification;
+    look.space = needs.space;
+    light();
+    buildTable();
+    if (pre) {
+        ClassifySettings settings;
+        if (needs.shaded) {
+            settings.light = BakedLight{look.bakedLightDirection, *look.shading};
+        }
+        classified = classify(*texels, geometry, servingTable(), settings);
+    }
+    return {};
+}
+
+Result<void> Scene::provide(const Needs& needs) {
+    if (provides(needs)) {
+        return {};
+    }
+    return state_->provideLook(needs).and_then([&] {
+        state_->skip = noSkip();
+        return needs.skip.structure == SkipStructure::None
+                   ? Result<void>{}
+                   : buildSkip(
+                         [&](const SkipSource& s) { return slabcast::buildSkip(s, needs.skip); });
+    });
+}
+
+std::optional<Needs> Scene::provided() const {
+    std::optional<Needs> all = state_->provided;
+    if (all) {
+        all->skip = skip().options;
+    }
+    return all;
+}
+
+bool Scene::provides(const Needs& needs) const {
+    const SkipOptions& built = skip().options;
+    return state_->provided && state_->provided->classification == needs.classification &&
+           state_->provided->space == needs.space && state_->provided->shaded == needs.shaded &&
+           (built == needs.skip || (built.structure == SkipStructure::None &&
+                                    needs.skip.structure == SkipStructure::None));
+}
+
+Result<void> Scene::State::needCodes() {
+    if (codes) {
+        return {};
+    }
+    if (texels->data.empty()) {
+        return fail(ErrorCode::InvalidArgument, kTexelsAreGone);
+    }
+    codes = std::make_shared<const TexelCodes>(encodeCodes(*texels));
+    return {};
+}
+
+CellVisibility Scene::State::visibility() const {
+    return cellVisibility(*codes, *texels, servingTable(), filterErrorSampled);
 }
 
 Result<void> Scene::buildSkip(const SkipBuild& build) {
-    SLABCAST_EXPECTS(!live_, lookGeneration_);
+    SLABCAST_EXPECTS(!state_->live && state_->provided, state_->lookGeneration);
     const auto from = [&](const TexelCodes& codes, const CellVisibility& visible) {
-        return build({codes, *texels_, visible, geometry_}).map([&](BuiltSkip&& built) {
-            skip_ = std::move(built);
-        });
+        return build({codes, *state_->texels, visible, state_->geometry})
+            .map([&](BuiltSkip&& built) { state_->skip = std::move(built); });
     };
-    if (classified_) {
-        const TexelCodes alpha = alphaCodes(*classified_);
+    if (state_->classified) {
+        const TexelCodes alpha = alphaCodes(*state_->classified);
         return from(alpha, cellVisibilityOfAlpha(alpha));
     }
-    needCodes();
-    return from(*codes_, visibility());
+    return state_->needCodes().and_then([&] { return from(*state_->codes, state_->visibility()); });
 }
 
 Result<void> Scene::startEditing(const LiveOptions& options) {
-    if (classified_) {
+    if (state_->classified) {
         return fail(ErrorCode::InvalidArgument,
                     "pre-classified texels hold the transfer function, which cannot be edited in "
                     "them: take post or pre-integrated classification");
     }
-    needCodes();
-    return LiveSkip::start({codes_, texels_, geometry_}, options, visibility(), skip())
-        .map([&](LiveSkip&& live) {
-            live_ = std::move(live);
-            skip_ = noSkip();
-        });
+    return state_->needCodes().and_then([&] {
+        return LiveSkip::start({state_->codes, state_->texels, state_->geometry}, options,
+                               state_->visibility(), skip())
+            .map([&](LiveSkip&& live) {
+                state_->live = std::move(live);
+                state_->skip = noSkip();
+            });
+    });
 }
 
 Result<void> Scene::edit(TransferFunction tf) {
-    SLABCAST_EXPECTS(live_.has_value(), lookGeneration_);
+    SLABCAST_EXPECTS(state_->live.has_value(), state_->lookGeneration);
     return validated(std::move(tf)).map([&](TransferFunction&& valid) {
-        look_.tf = std::move(valid);
-        lookGeneration_ = nextGeneration();
-        buildTable();
-        live_->edit(visibility());
+        state_->look.tf = std::move(valid);
+        state_->lookGeneration = nextGeneration();
+        state_->buildTable();
+        state_->live->edit(state_->visibility());
     });
 }
 
 LiveProgress Scene::work(double budgetMs) {
-    SLABCAST_EXPECTS(live_.has_value(), lookGeneration_);
-    return live_->work(budgetMs);
+    SLABCAST_EXPECTS(state_->live.has_value(), state_->lookGeneration);
+    return state_->live->work(budgetMs);
 }
 
 void Scene::stopEditing() {
-    if (live_) {
-        skip_ = live_->current();
-        live_.reset();
+    if (state_->live) {
+        state_->skip = state_->live->current();
+        state_->live.reset();
     }
-}
-
-std::vector<const BuiltSkip*> Scene::residentSkips() const {
-    if (live_) {
-        return {&live_->always(), &live_->settled(), &live_->incoming()};
-    }
-    return {&skip_};
 }
 
 std::vector<Scene> Scene::withEachServing() const {
-    SLABCAST_EXPECTS(live_.has_value(), lookGeneration_);
+    SLABCAST_EXPECTS(state_->live.has_value(), state_->lookGeneration);
     std::vector<Scene> scenes;
-    for (LiveSkip& live : live_->eachServing()) {
+    for (LiveSkip& live : state_->live->eachServing()) {
         scenes.push_back(*this);
-        scenes.back().live_ = std::move(live);
+        scenes.back().state_->live = std::move(live);
     }
     return scenes;
 }
 
+void Scene::releaseCodes() {
+    state_->codes.reset();
+}
+
+void Scene::releaseTexels() {
+    Texels described = *state_->texels;
+    described.data = {};
+    state_->texels = std::make_shared<const Texels>(std::move(described));
+}
+
+int Scene::maxTableSize() const {
+    return state_->maxTableSize;
+}
+
+const std::string& Scene::name() const {
+    return state_->volumeName;
+}
+
+const VolumeGeometry& Scene::geometry() const {
+    return state_->geometry;
+}
+
+const VolumeStatistics& Scene::statistics() const {
+    return state_->statistics;
+}
+
+const Look& Scene::look() const {
+    return state_->look;
+}
+
+const Texels& Scene::texels() const {
+    return *state_->texels;
+}
+
+const TransferTable& Scene::table() const {
+    return state_->servingTable();
+}
+
+const ClassifiedTexels* Scene::classified() const {
+    return state_->classified ? &*state_->classified : nullptr;
+}
+
+const PreintegratedTable* Scene::preintegrated() const {
+    return state_->preintegrated ? &*state_->preintegrated : nullptr;
+}
+
+const BuiltSkip& Scene::skip() const {
+    return state_->live ? state_->live->current() : state_->skip;
+}
+
+const LiveSkip* Scene::live() const {
+    return state_->live ? &*state_->live : nullptr;
+}
+
+int Scene::texelsGeneration() const {
+    return state_->texelsGeneration;
+}
+
+int Scene::lookGeneration() const {
+    return state_->lookGeneration;
+}
+
+std::vector<const BuiltSkip*> Scene::residentSkips() const {
+    if (state_->live) {
+        return {&state_->live->always(), &state_->live->settled(), &state_->live->incoming()};
+    }
+    return {&state_->skip};
+}
+
 SceneFacts Scene::facts() const {
     SceneFacts facts;
-    facts.sphere = geometry_.boundingSphere();
-    facts.smallestVoxelEdgeMm = geometry_.smallestVoxelEdgeMm();
-    facts.exactField = isExact(texels_->format);
+    facts.look = state_->lookGeneration;
+    facts.sphere = state_->geometry.boundingSphere();
+    facts.smallestVoxelEdgeMm = state_->geometry.smallestVoxelEdgeMm();
+    facts.exactField = isExact(state_->texels->format);
     facts.skip = skip().options;
     facts.occupiedFraction = skip().occupiedFraction;
+    if (!state_->provided) {
+        return facts;
+    }
     const std::vector<glm::vec4>& texels = table().texels;
     facts.oneMaterial =
         std::adjacent_find(texels.begin(), texels.end(), std::not_equal_to<>()) == texels.end();
@@ -161,18 +398,22 @@ SceneFacts Scene::facts() const {
         facts.maxExtinctionPerMm = std::max(facts.maxExtinctionPerMm,
                                             static_cast<double>(texel.a) * table().extinctionPerMm);
     }
-    facts.wideTable = table_.wide;
-    facts.visibleColorRange =
-        visibleColorRange(look_.tf, statistics_.min, statistics_.max, look_.space);
+    facts.wideTable = state_->table.wide;
+    facts.visibleColorRange = visibleColorRange(state_->look.tf, state_->statistics.min,
+                                                state_->statistics.max, state_->provided->space);
     facts.anythingVisible =
         facts.maxExtinctionPerMm > 0.0 && (!skip().exists() || skip().occupiedFraction > 0.0);
     return facts;
 }
 
 double Scene::defaultGradientFloorPerMm() const {
+    return state_->defaultGradientFloorPerMm();
+}
+
+double Scene::State::defaultGradientFloorPerMm() const {
     constexpr double kShareOfRangePerVoxel = 0.005;
-    return kShareOfRangePerVoxel * (statistics_.max - statistics_.min) /
-           geometry_.smallestVoxelEdgeMm();
+    return kShareOfRangePerVoxel * (statistics.max - statistics.min) /
+           geometry.smallestVoxelEdgeMm();
 }
 
 } // namespace slabcast

@@ -5,6 +5,7 @@
 
 #include "core/skip/built_skip.h"
 #include "core/skip/grid_rebuild.h"
+#include "core/skip/live_options.h"
 #include "core/skip/visible_values.h"
 
 namespace slabcast {
@@ -20,36 +21,12 @@ struct NotCopied : std::unique_ptr<T> {
     using std::unique_ptr<T>::operator=;
 };
 
-/// How empty space is skipped while a TF is edited.
-struct LiveOptions {
-    /// The structure that serves while the TF changes. It is built once and is exact under any TF:
-    /// a bitfield octree, a min-max octree, or partitioned maps.
-    SkipOptions always{.structure = SkipStructure::BitfieldOctree};
-    /// The structure that serves once the TF rests. It skips more, but is exact under the one TF
-    /// that it was built for: proximity, chebyshev or blocks. None: the first one always serves.
-    SkipOptions settled{.structure = SkipStructure::Proximity};
-    /// Rebuilding begins after so many calls of work() without an edit. While a TF is dragged, an
-    /// edit comes in every frame or two, and what was begun in between would be thrown away. Three
-    /// frames without one, 50 ms at 60 Hz, mean that the hand rests.
-    int quietFrames = 3;
-};
-
 /// The data that both structures are built from. It does not change and is shared with the scene.
 struct LiveSource {
     std::shared_ptr<const TexelCodes> codes;
     std::shared_ptr<const Texels> texels; // scale and bias
     VolumeGeometry geometry;
 };
-
-enum class LiveProgress : std::uint8_t {
-    Settled,  // nothing to do: the settled structure serves and fits the TF
-    Waiting,  // the last edit was too few frames ago, or the budget is 0
-    Building, // the settled structure is being rebuilt
-    Incoming, // it is rebuilt; its texture is being uploaded, a share a frame
-    Swapped,  // it serves from this call on
-};
-
-const char* name(LiveProgress progress);
 
 /// Bytes of a rebuilt structure's texture that one frame uploads.
 constexpr std::int64_t kUploadBytesPerFrame = 1 << 20;

@@ -11,13 +11,69 @@ Frustum symmetricFrustum(double verticalFovDegrees, double aspect) {
     return {-top * aspect, top * aspect, -top, top};
 }
 
-Frustum frustumOf(const glm::dmat4& clipFromView) {
+namespace {
+
+bool isFinite(const glm::dmat4& m) {
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 4; ++row) {
+            if (!std::isfinite(m[column][row])) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/// NaN makes every comparison false.
+bool isOpen(const Frustum& f) {
+    return std::isfinite(f.left) && std::isfinite(f.right) && std::isfinite(f.bottom) &&
+           std::isfinite(f.top) && f.left < f.right && f.bottom < f.top;
+}
+
+} // namespace
+
+Result<Frustum> frustumOf(const glm::dmat4& clipFromView) {
+    const glm::dmat4& m = clipFromView;
+    const double w = -m[2][3]; // clip.w = w * depth
+    const bool perspective = m[0][3] == 0.0 && m[1][3] == 0.0 && m[3][3] == 0.0 && w > 0.0;
+    const bool upright = m[0][1] == 0.0 && m[1][0] == 0.0 && m[3][0] == 0.0 && m[3][1] == 0.0;
+    if (!isFinite(m) || !perspective || !upright) {
+        return fail(ErrorCode::InvalidArgument,
+                    "the projection is not a perspective one in GL's conventions (an orthographic "
+                    "matrix, one that turns the picture, or NaN): give what glFrustum would");
+    }
     // ndc.x = m00 * x/depth - m20 (with w = -z): solve for ndc.x = -1 and +1, likewise y.
-    const double m00 = clipFromView[0][0];
-    const double m11 = clipFromView[1][1];
-    const double m20 = clipFromView[2][0];
-    const double m21 = clipFromView[2][1];
-    return {(m20 - 1.0) / m00, (m20 + 1.0) / m00, (m21 - 1.0) / m11, (m21 + 1.0) / m11};
+    const Frustum f{(m[2][0] - w) / m[0][0], (m[2][0] + w) / m[0][0], (m[2][1] - w) / m[1][1],
+                    (m[2][1] + w) / m[1][1]};
+    if (!isOpen(f)) {
+        return fail(ErrorCode::InvalidArgument,
+                    "the projection's frustum is empty or mirrored: x to the right, y up");
+    }
+    return f;
+}
+
+Result<void> check(const View& view) {
+    const glm::dmat4& m = view.viewFromModel;
+    const glm::dmat3 axes(m);
+    const double lengths = glm::length(axes[0]) * glm::length(axes[1]) * glm::length(axes[2]);
+    const double volume = std::abs(glm::determinant(axes));
+    constexpr double kFlat = 1e-6; // of the box that axes at right angles would span
+    const bool affine = m[0][3] == 0.0 && m[1][3] == 0.0 && m[2][3] == 0.0 && m[3][3] == 1.0;
+    if (!isFinite(m) || !affine || !(volume > kFlat * lengths)) {
+        return fail(ErrorCode::InvalidArgument,
+                    "viewFromModel is no rotation, translation and uniform scale: it holds NaN, "
+                    "flattens space or projects");
+    }
+    if (!isOpen(view.frustum)) {
+        return fail(ErrorCode::InvalidArgument,
+                    "the view's frustum is empty: left < right and bottom < top are needed, as "
+                    "tangents at unit depth");
+    }
+    if (!(view.nearDepth >= 0.0) || !std::isfinite(view.nearDepth)) {
+        return fail(ErrorCode::InvalidArgument,
+                    "the view's near plane lies behind the eye: give nearDepth from 0 on");
+    }
+    return {};
 }
 
 glm::dmat4 viewFromModel(const OrbitCamera& camera, const BoundingSphere& sphere) {

@@ -4,6 +4,7 @@
 
 #include <glm/glm.hpp>
 
+#include "core/base/error.h"
 #include "core/volume/volume.h"
 
 namespace slabcast {
@@ -20,8 +21,9 @@ struct Frustum {
 /// Symmetric, from a vertical field of view.
 Frustum symmetricFrustum(double verticalFovDegrees, double aspect);
 /// Of a perspective matrix in GL's conventions, as an app or OpenXR runtime hands it over. Far is
-/// not used.
-Frustum frustumOf(const glm::dmat4& clipFromView);
+/// not used. Fails: InvalidArgument (an orthographic or mirrored matrix, NaN). Tested by:
+/// view_test.cpp
+Result<Frustum> frustumOf(const glm::dmat4& clipFromView);
 
 /// One eye. View space looks along -z; "depth" is -z, "distance" is from the eye.
 struct View {
@@ -30,6 +32,11 @@ struct View {
     Frustum frustum;
     double nearDepth = 0.0; // view units; nothing nearer is drawn. 0: from the eye on
 };
+
+/// Whether a picture can be made of it. Fails: InvalidArgument (NaN or infinite numbers, a matrix
+/// that moves no space onto space, an empty frustum, a near plane behind the eye). Tested by:
+/// view_test.cpp
+Result<void> check(const View& view);
 
 /// Rectangle of the target in pixels, origin at its lower left.
 struct Viewport {

@@ -46,19 +46,16 @@ View orbitView(const Scene& scene, const OrbitCamera& camera, double fovDegrees,
             .frustum = symmetricFrustum(fovDegrees, static_cast<double>(size.x) / size.y)};
 }
 
-Result<Scene> Bench::scene(const Volume& volume, const Look& look, const SkipOptions& skip,
-                           bool exact) const {
-    const TexelFormat format =
-        chooseTexelFormat(volume.type, computeStatistics(volume), exact, formats_, nullptr);
-    const auto test = std::find_if(formats_.begin(), formats_.end(),
-                                   [=](const TexelFormatTest& t) { return t.format == format; });
-    Scene scene =
-        Scene::create(volume, format, test == formats_.end() ? 0.0 : test->maxFilterError);
-    const int maxTable = static_cast<int>(std::min<std::int64_t>(4096, caps_.maxTextureSize));
-    if (Result<void> set = scene.setLook(look, skip, maxTable); !set) {
-        return tl::unexpected(set.error());
-    }
-    return scene;
+Result<Scene> Bench::scene(const Volume& volume, const Appearance& appearance,
+                           const SkipOptions& skip, bool exact) const {
+    const TextureChoice choice =
+        Device(caps_, formats_).texturesFor(volume.type, computeStatistics(volume), exact);
+    return Scene::create(volume, choice).and_then([&](Scene&& scene) -> Result<Scene> {
+        if (Result<void> shown = show(scene, appearance, skip); !shown) {
+            return tl::unexpected(shown.error());
+        }
+        return std::move(scene);
+    });
 }
 
 Result<FramePlan> Bench::plan(const Scene& scene, const Settings& settings) const {
@@ -154,7 +151,7 @@ std::vector<glm::dvec4> continuousPicture(const Scene& scene, const View& view, 
     return renderContinuous({.texels = &scene.texels(),
                              .geometry = scene.geometry(),
                              .tf = scene.look().tf,
-                             .space = scene.look().space,
+                             .space = scene.provided()->space,
                              .view = view,
                              .viewport = {0, 0, size.x, size.y}});
 }

@@ -9,6 +9,7 @@
 #include "core/draw/renderer.h"
 #include "core/gl/color_targets.h"
 #include "core/scene/texel_format.h"
+#include "perf/stability/appearance.h"
 #include "perf/stability/case.h"
 
 namespace slabcast::stability {
@@ -48,8 +49,8 @@ public:
     bool reduced() const { return reduced_; }
 
     /// Texel format as the renderer would choose it for this device.
-    Result<Scene> scene(const Volume& volume, const Look& look, const SkipOptions& skip = {},
-                        bool exact = false) const;
+    Result<Scene> scene(const Volume& volume, const Appearance& appearance,
+                        const SkipOptions& skip = {}, bool exact = false) const;
     Result<FramePlan> plan(const Scene& scene, const Settings& settings) const;
     /// Into a target of the plan's format, cleared to transparent black.
     Result<Drawn> draw(const Scene& scene, const Settings& settings, const View& view,

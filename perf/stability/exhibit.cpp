@@ -88,7 +88,7 @@ Settings settingsFor(const Exhibit& exhibit, const Method& method) {
     Settings settings = settingsOf(method);
     settings.lattice = exhibit.lattice;
     settings.layerSpacingVoxels = exhibit.layerSpacingVoxels;
-    settings.shaded = exhibit.scene.look().shading.has_value();
+    settings.shaded = exhibit.scene.provided()->shaded;
     return settings;
 }
 

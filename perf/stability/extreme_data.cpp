@@ -100,7 +100,7 @@ double ball(glm::ivec3 v) {
 Result<Scene> ballOfVoxels(Bench& bench, double mm, bool lit) {
     TransferFunction tf = ramp();
     tf.opacityUnitMm = mm;
-    Look look{.tf = tf};
+    Appearance look{.tf = tf};
     if (lit) {
         look.shading = ShadingParameters{};
     }

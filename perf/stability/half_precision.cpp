@@ -171,7 +171,7 @@ void halfPrecisionCases(Bench& bench) {
     for (const HalfScene& setup : scenes(bench.reduced())) {
         const Volume volume = formulaVolume(glm::ivec3(48), VoxelType::U16, setup.formula);
         for (const Group& group : kGroups) {
-            Look look{.tf = setup.tf};
+            Appearance look{.tf = setup.tf};
             if (group.shaded) {
                 look.shading = ShadingParameters{};
             }

@@ -26,7 +26,8 @@ Settings settingsOfAll(const FrugalScene& setup) {
 }
 
 /// The same frame with everything in, needed or not.
-FramePlan withAll(FramePlan plan) {
+FramePlan withAll(FramePlan plan, const Scene& sceneWithAll) {
+    plan.look = sceneWithAll.lookGeneration();
     plan.skip = SkipStructure::Proximity;
     plan.variant.skip = SkipForm::Balls;
     plan.variant.shaded = true;
@@ -69,7 +70,7 @@ Result<Times> timed(Bench& bench, const Scene& scene, const FramePlan& plan,
     }
     target.begin();
     const ViewTarget where{view, target.framebuffer(), {0, 0, size.x, size.y}};
-    const FramePlan all = withAll(plan);
+    const FramePlan all = withAll(plan, sceneWithAll);
     Times least{.frames = bench.reduced() ? 3 : 9};
     for (int k = 0; k <= least.frames; ++k) {
         const Result<double> frugal = frameMs(bench, scene, plan, where);
@@ -169,9 +170,9 @@ Result<gl::ActiveResources> resourcesOf(Bench& bench, const Scene& scene, const 
 
 Result<void> judge(Bench& bench, const FrugalScene& setup) {
     const Volume volume = setup.volume();
-    const Look look{.tf = setup.tf,
-                    .shading = setup.lit ? std::optional(ShadingParameters{}) : std::nullopt};
-    Look lookWithAll = look;
+    const Appearance look{.tf = setup.tf,
+                          .shading = setup.lit ? std::optional(ShadingParameters{}) : std::nullopt};
+    Appearance lookWithAll = look;
     lookWithAll.shading = setup.lit ? look.shading : std::optional(kIdleLight);
     const Result<Scene> scene = bench.scene(volume, look);
     const Result<Scene> sceneWithAll = bench.scene(volume, lookWithAll);
@@ -185,7 +186,7 @@ Result<void> judge(Bench& bench, const FrugalScene& setup) {
     const glm::ivec2 size = sizeOf(bench);
     const View view = orbitView(*scene, setup.camera, setup.fovDegrees, size);
     const Result<Times> times = timed(bench, *scene, *plan, *sceneWithAll, view);
-    const Result<Drawn> full = bench.draw(*sceneWithAll, withAll(*plan), view, size);
+    const Result<Drawn> full = bench.draw(*sceneWithAll, withAll(*plan, *sceneWithAll), view, size);
     const Result<Drawn> frugal = bench.draw(*scene, *plan, view, size); // the last: its textures
     const Result<WorkCounters> work = bench.countWork(*scene, *plan, view, size);
     const Result<gl::ActiveResources> resources = resourcesOf(bench, *scene, *plan, view, size);

@@ -15,9 +15,6 @@
 
 namespace slabcast {
 
-/// Where skip structures are built. Auto: on the GPU, unless that is the CPU in disguise.
-enum class SkipBuilder : std::uint8_t { Auto, Cpu, Gpu };
-
 /// What render and sweep have in common: the scene, the camera and the settings of the plan.
 struct SceneOptions {
     InputOptions input;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/gl/api.h"
+#include "core/gl/get_proc.h"
 
 namespace slabcast {
 

@@ -19,13 +19,26 @@ if grep -rF -e "$build" -e "$(realpath "$source/../..")/" -e "$work/first" "$wor
     fail "the package names the folder above"
 fi
 
+# What applications include is there, and no internals.
+include=$work/prefix/include/slabcast
+[[ -s $include/slabcast.h && -s $include/platform/egl/egl_context.h ]] || fail "the way in is not installed"
+for internal in core/gl/api.h core/gl/objects.h core/gl/state_guard.h core/scene/scene.h core/scene/gpu_scene.h \
+    core/skip/octree.h core/skip/live_skip.h core/draw/renderer.h core/draw/proxy_stack.h core/reference/continuous.h \
+    platform/egl/egl_library.h platform/io/readers.h platform/io/itk_volume.h platform/json/json_checks.h; do
+    [[ -e $source/../../$internal ]] || fail "$internal is looked for and is no more: name another"
+    [[ ! -e $include/$internal ]] || fail "$internal is installed"
+done
+
 cp -r "$source" "$work/source"
+cp -r "$source/../../examples" "$work/source/examples"
 if ! { cmake -S "$work/source" -B "$work/build" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" &&
     cmake --build "$work/build"; } >"$work/log" 2>&1; then
     cat "$work/log"
     fail "the consumer does not build"
 fi
-"$work/build/consumer" || fail "the picture is wrong"
+for example in minimal stereo edit; do
+    "$work/build/$example" || fail "$example: the picture is wrong"
+done
 
 # The importers are a part of their own: left out of a build without ITK.
 if [[ -n $(find "$work/prefix" -name 'Slabcast_io.cmake') ]]; then

@@ -21,7 +21,7 @@ protected:
     void compare(Classification classification, const SkipOptions& options) {
         const glm::ivec2 size(64, 48);
         const Volume volume = spikes({37, 29, 23});
-        const Look look{.tf = spikesOnly(), .classification = classification};
+        const Appearance look{.tf = spikesOnly(), .classification = classification};
         Settings settings = segments(kAll, SegmentForm::Loop);
         settings.classification = classification;
         Scene scene = makeScene(volume, look, {.structure = SkipStructure::None});

@@ -91,17 +91,21 @@ Settings anySkip() {
 
 class LiveEditingTest : public RenderTest {
 protected:
-    Scene edited(const LiveOptions& options, Classification classification = Classification::Post) {
+    LiveScene edited(const LiveOptions& options,
+                     Classification classification = Classification::Post) {
         const SkipOptions skip = options.settled;
         Scene scene = makeScene(
             balls(), {.tf = band(2000.0, 3900.0), .classification = classification}, skip);
-        const Result<void> started = scene.startEditing(options);
-        EXPECT_TRUE(started.has_value()) << (started ? "" : started.error().detail);
-        return scene;
+        return started(std::move(scene), options);
+    }
+    static LiveScene started(Scene scene, const LiveOptions& options) {
+        Result<LiveScene> live = LiveScene::start(std::move(scene), options);
+        EXPECT_TRUE(live.has_value()) << (live ? "" : live.error().detail);
+        return std::move(*live);
     }
     FramePlan planOf(const Scene& scene) {
         Settings settings = anySkip();
-        settings.classification = scene.look().classification;
+        settings.classification = scene.provided()->classification;
         return decide(scene, settings);
     }
     Picture draw(const Scene& scene) {
@@ -110,9 +114,9 @@ protected:
     /// The same look, set anew, without any skipping.
     Picture fromScratch(const Scene& scene) {
         Scene fresh = scene;
-        const Result<void> set =
-            fresh.setLook(scene.look(), {.structure = SkipStructure::None}, 4096);
-        EXPECT_TRUE(set.has_value());
+        const Appearance appearance{.tf = scene.look().tf,
+                                    .classification = scene.provided()->classification};
+        EXPECT_TRUE(show(fresh, appearance, {.structure = SkipStructure::None}).has_value());
         return draw(fresh);
     }
     View viewOf(const Scene& scene) { return orbitView(scene, {30.0, 15.0, 2.2}, 40.0, kSmall); }
@@ -121,7 +125,7 @@ protected:
     std::vector<SkipStructure> editAndCompare(const LiveOptions& options,
                                               Classification classification, int frames) {
         Random random(11);
-        Scene scene = edited(options, classification);
+        LiveScene scene = edited(options, classification);
         std::vector<SkipStructure> seen;
         int shown = 0;
         for (int frame = 0; frame < frames; ++frame) {
@@ -175,7 +179,7 @@ TEST_F(LiveEditingTest, SoItIsWithMergedMaps) {
 }
 
 TEST_F(LiveEditingTest, OnlyWhatChangedIsUploaded) {
-    Scene scene = edited({.quietFrames = 0});
+    LiveScene scene = edited({.quietFrames = 0});
     draw(scene);
     const std::int64_t bytes = renderer().gpuMemory().skipBytes;
     const Calls calls;
@@ -191,22 +195,23 @@ TEST_F(LiveEditingTest, OnlyWhatChangedIsUploaded) {
     draw(scene);
     EXPECT_EQ(Calls::volumes, 1) << "the new map";
     const std::int64_t withSpare = renderer().gpuMemory().skipBytes;
-    EXPECT_EQ(withSpare, bytes + gpuBytes(scene.skip())) << "the old one is kept for the next";
+    EXPECT_EQ(withSpare, bytes + gpuBytes(scene.scene().skip()))
+        << "the old one is kept for the next";
     ASSERT_TRUE(scene.edit(band(200.0, 3000.0)).has_value());
     EXPECT_EQ(scene.work(kNoLimit), LiveProgress::Swapped);
     draw(scene);
     EXPECT_EQ(renderer().gpuMemory().skipBytes, withSpare) << "in place of the spare one";
-    scene.stopEditing();
-    draw(scene);
-    EXPECT_EQ(renderer().gpuMemory().skipBytes, gpuBytes(scene.skip())) << "which then goes";
+    const Scene after = std::move(scene).stop();
+    draw(after);
+    EXPECT_EQ(renderer().gpuMemory().skipBytes, gpuBytes(after.skip())) << "which then goes";
 }
 
 TEST_F(LiveEditingTest, ALargeMapIsUploadedAShareAFrame) {
     const Volume ramp =
         makeVolume({130, 120, 110}, VoxelType::U8, [](glm::ivec3 v) { return v.x; });
     const SkipOptions fine{.blockEdgeVoxels = 1};
-    Scene scene = makeScene(ramp, {.tf = band(20.0, 90.0)}, fine);
-    ASSERT_TRUE(scene.startEditing({.settled = fine, .quietFrames = 0}).has_value());
+    LiveScene scene = started(makeScene(ramp, {.tf = band(20.0, 90.0)}, fine),
+                              {.settled = fine, .quietFrames = 0});
     draw(scene);
     ASSERT_TRUE(scene.edit(band(20.0, 120.0)).has_value());
     std::int64_t uploaded = 0;
@@ -222,13 +227,13 @@ TEST_F(LiveEditingTest, ALargeMapIsUploadedAShareAFrame) {
         uploaded += Calls::wordBytes;
     }
     EXPECT_EQ(frames, 2);
-    EXPECT_EQ(uploaded, gpuBytes(scene.skip()));
+    EXPECT_EQ(uploaded, gpuBytes(scene.scene().skip()));
     const Picture picture = draw(scene);
     EXPECT_EQ(differingPixels(picture, fromScratch(scene)), 0);
 }
 
 TEST_F(LiveEditingTest, ATransferFunctionThatShowsNothingKeepsTheTextures) {
-    Scene scene = edited({});
+    LiveScene scene = edited({});
     draw(scene);
     const std::int64_t volumeBytes = renderer().gpuMemory().volumeBytes;
     const Calls calls;
@@ -242,10 +247,10 @@ TEST_F(LiveEditingTest, ATransferFunctionThatShowsNothingKeepsTheTextures) {
 }
 
 TEST_F(LiveEditingTest, AfterWarmingUpNothingIsCompiledNorAllocated) {
-    Scene scene = makeScene(balls(), {.tf = band(2000.0, 3900.0)},
-                            {.structure = SkipStructure::None}); // the map is still to be built
-    ASSERT_TRUE(scene.startEditing({.quietFrames = 0}).has_value());
-    Result<Renderer> own = Renderer::create(caps());
+    LiveScene scene = started(makeScene(balls(), {.tf = band(2000.0, 3900.0)},
+                                        {.structure = SkipStructure::None}), // yet to be built
+                              {.quietFrames = 0});
+    Result<Renderer> own = Renderer::create(device());
     ASSERT_TRUE(own.has_value());
     gl::ColorTargets target;
     ASSERT_TRUE(target.resize(kSmall.x, kSmall.y, {GL_RGBA8}).has_value());
@@ -277,45 +282,43 @@ TEST_F(LiveEditingTest, AfterWarmingUpNothingIsCompiledNorAllocated) {
 }
 
 TEST_F(LiveEditingTest, PreclassifiedTexelsAreRefused) {
-    Scene scene =
-        makeScene(balls(), {.tf = band(2000.0, 3900.0), .classification = Classification::Pre}, {});
-    const Result<void> started = scene.startEditing();
-    ASSERT_FALSE(started.has_value());
-    EXPECT_EQ(started.error().code, ErrorCode::InvalidArgument);
-    EXPECT_EQ(scene.live(), nullptr);
-    EXPECT_TRUE(scene.skip().exists());
+    const Result<LiveScene> live = LiveScene::start(makeScene(
+        balls(), {.tf = band(2000.0, 3900.0), .classification = Classification::Pre}, {}));
+    ASSERT_FALSE(live.has_value());
+    EXPECT_EQ(live.error().code, ErrorCode::InvalidArgument);
 }
 
 TEST_F(LiveEditingTest, AnInvalidTransferFunctionChangesNothing) {
-    Scene scene = edited({});
-    const int look = scene.lookGeneration();
+    LiveScene scene = edited({});
+    const int look = scene.scene().lookGeneration();
     const Result<void> done = scene.edit({.points = {{5.0, glm::dvec3(1.0), 2.0}}});
     ASSERT_FALSE(done.has_value());
     EXPECT_EQ(done.error().code, ErrorCode::InvalidTransferFunction);
-    EXPECT_EQ(scene.lookGeneration(), look);
-    EXPECT_EQ(scene.look().tf.points.size(), 3U);
+    EXPECT_EQ(scene.scene().lookGeneration(), look);
+    EXPECT_EQ(scene.scene().look().tf.points.size(), 3U);
 }
 
 TEST_F(LiveEditingTest, WhoStopsKeepsWhatSkipsNow) {
-    Scene scene = edited({});
+    LiveScene scene = edited({});
     ASSERT_TRUE(scene.edit(band(300.0, 3000.0)).has_value());
     const Picture picture = draw(scene);
     const std::int64_t bytes = renderer().gpuMemory().skipBytes;
-    scene.stopEditing();
-    EXPECT_EQ(scene.live(), nullptr);
-    EXPECT_EQ(scene.skip().options.structure, SkipStructure::BitfieldOctree);
-    EXPECT_EQ(differingPixels(picture, draw(scene)), 0);
+    const Scene after = std::move(scene).stop();
+    EXPECT_EQ(after.live(), nullptr);
+    EXPECT_EQ(after.skip().options.structure, SkipStructure::BitfieldOctree);
+    EXPECT_EQ(differingPixels(picture, draw(after)), 0);
     EXPECT_LT(renderer().gpuMemory().skipBytes, bytes) << "the map is gone";
 }
 
 TEST_F(LiveEditingTest, ACopyHasALookOfItsOwn) {
-    Scene scene = edited({});
-    Scene copy = scene;
+    LiveScene scene = edited({});
+    LiveScene copy = scene;
     ASSERT_TRUE(copy.edit(band(300.0, 3000.0)).has_value());
-    EXPECT_EQ(scene.skip().options.structure, SkipStructure::Proximity);
+    EXPECT_EQ(scene.scene().skip().options.structure, SkipStructure::Proximity);
     EXPECT_EQ(differingPixels(draw(scene), fromScratch(scene)), 0);
     EXPECT_EQ(differingPixels(draw(copy), fromScratch(copy)), 0);
-    EXPECT_EQ(scene.texelsGeneration(), copy.texelsGeneration()) << "one texture for both";
+    EXPECT_EQ(scene.scene().texelsGeneration(), copy.scene().texelsGeneration())
+        << "one texture for both";
 }
 
 } // namespace slabcast::test

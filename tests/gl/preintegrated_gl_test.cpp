@@ -32,7 +32,7 @@ Settings preintegrated(Settings settings) {
     return settings;
 }
 
-Look preintegratedLook(TransferFunction tf) {
+Appearance preintegratedLook(TransferFunction tf) {
     return {.tf = std::move(tf), .classification = Classification::Preintegrated};
 }
 
@@ -234,7 +234,7 @@ TEST_F(PreintegratedTest, ItsTableTakesThePlaceOfTheOther) {
         return renderer().gpuMemory().otherBytes;
     };
     const std::int64_t square = bytesOf(preintegrated(segments(8, SegmentForm::Loop)));
-    ASSERT_TRUE(scene.setLook({.tf = tf}, {}, 4096).has_value());
+    ASSERT_TRUE(show(scene, {.tf = tf}, {}).has_value());
     EXPECT_EQ(scene.preintegrated(), nullptr);
     const std::int64_t line = bytesOf(segments(8, SegmentForm::Loop));
     EXPECT_EQ(square - line, 8 * (41 * 41 - 41));

@@ -135,7 +135,7 @@ TEST_F(RendererTest, EveryPixelMatchesTheFloat64Reference) {
             const glm::ivec3 dims{16 + random.below(12), 16 + random.below(12),
                                   16 + random.below(12)};
             const Volume volume = wavyVolume(random, dims, c.type, spacing);
-            Look look{.tf = smoothTransfer(random, c.type == VoxelType::U8 ? 255.0 : 65535.0, 0.4),
+            Appearance look{.tf = smoothTransfer(random, c.type == VoxelType::U8 ? 255.0 : 65535.0, 0.4),
                       .classification = c.classification};
             if (c.shaded) {
                 look.shading = ShadingParameters{.specular = c.specular};
@@ -203,6 +203,7 @@ TEST_F(RendererTest, TerminationLosesNoMoreThanItsThreshold) {
     for (const SegmentForm form : {SegmentForm::Loop, SegmentForm::Unrolled}) {
         Settings settings = segments(32, form);
         const FramePlan all = decide(scene, settings);
+        const FramePlan allOfPlain = decide(plain, settings);
         settings.termination = 0.9;
         const FramePlan early = decide(scene, settings);
         ASSERT_TRUE(early.variant.terminates);
@@ -211,8 +212,8 @@ TEST_F(RendererTest, TerminationLosesNoMoreThanItsThreshold) {
         EXPECT_GT(lost, 0.01); // it did leave
         const double rounding = blendingBound(all) + blendingBound(early);
         EXPECT_LE(lost, 0.1 + rounding);
-        const Picture whole = draw(plain, all, view, kSize);
-        const Picture closed = draw(plain, early, view, kSize);
+        const Picture whole = draw(plain, allOfPlain, view, kSize);
+        const Picture closed = draw(plain, decide(plain, settings), view, kSize);
         double ofOneColour = 0.0;
         for (std::size_t i = 0; i < whole.pixels.size(); ++i) {
             const glm::vec4 off = glm::abs(whole.pixels[i] - closed.pixels[i]);

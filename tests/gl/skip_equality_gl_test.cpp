@@ -134,7 +134,7 @@ protected:
         Random random(seed);
         const Volume volume = randomVolume(random);
         const double highest = std::max(1.0, computeStatistics(volume).max);
-        Look look{.tf = randomTransfer(random, highest), .classification = classification};
+        Appearance look{.tf = randomTransfer(random, highest), .classification = classification};
         if (shaded) {
             look.shading = ShadingParameters{};
         }
@@ -152,7 +152,7 @@ protected:
             const SkipStructureInfo& info =
                 skipStructures()[static_cast<std::size_t>(1 + random.below(7))];
             const SkipOptions options = randomOptions(random, info);
-            const Result<void> set = scene.setLook(look, options, 4096);
+            const Result<void> set = show(scene, look, options);
             EXPECT_TRUE(set.has_value()) << (set ? "" : set.error().detail);
             settings.skip = random.chance(0.9) ? info.structure : SkipStructure::None;
             settings.tighten = random.chance(0.5);

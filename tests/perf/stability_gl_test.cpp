@@ -21,7 +21,7 @@ protected:
     static Volume box() {
         return formulaVolume({8, 8, 8}, VoxelType::U8, [](glm::ivec3) { return 100.0; });
     }
-    static Look look() { return {.tf = uniformTransfer(0.3, glm::dvec3(1.0))}; }
+    static Appearance look() { return {.tf = uniformTransfer(0.3, glm::dvec3(1.0))}; }
 };
 
 TEST(Verdict, IsGoodWhereEveryCaseKeepsItsBound) {
@@ -118,7 +118,7 @@ TEST_F(StabilityTest, APixelsOwnBoundTellsPicturesOfDifferentViewsApart) {
     Bench bench = this->bench();
     const Volume ramp =
         formulaVolume({16, 16, 16}, VoxelType::U8, [](glm::ivec3 v) { return 16.0 * v.x; });
-    const Look rising{
+    const Appearance rising{
         .tf = {.points = {{0.0, glm::dvec3(1.0), 0.0}, {255.0, glm::dvec3(1.0), 0.3}}}};
     const Result<Scene> scene = bench.scene(ramp, rising, {.structure = SkipStructure::None});
     ASSERT_TRUE(scene.has_value()) << scene.error().detail;

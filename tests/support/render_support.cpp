@@ -124,7 +124,7 @@ Settings segments(int layersPerPlane, SegmentForm form) {
 
 Renderer& RenderTest::renderer() {
     static Renderer* shared = [this] {
-        Result<Renderer> made = Renderer::create(caps());
+        Result<Renderer> made = Renderer::create(device());
         EXPECT_TRUE(made.has_value());
         return new Renderer(std::move(*made)); // kept to the process's end, as the context is
     }();
@@ -136,15 +136,17 @@ const std::vector<TexelFormatTest>& RenderTest::formats() {
     return *tests;
 }
 
-Scene RenderTest::makeScene(const Volume& volume, const Look& look, const SkipOptions& skip,
-                            bool exact) {
-    const TexelFormat format =
-        chooseTexelFormat(volume.type, computeStatistics(volume), exact, formats(), nullptr);
-    Scene scene =
-        Scene::create(volume, format, formats()[static_cast<std::size_t>(format)].maxFilterError);
-    const Result<void> set = scene.setLook(look, skip, 4096);
-    EXPECT_TRUE(set.has_value()) << (set ? "" : set.error().detail);
-    return scene;
+Device RenderTest::device(DeviceOptions options) {
+    return Device(caps(), formats(), std::move(options));
+}
+
+Scene RenderTest::makeScene(const Volume& volume, const Appearance& appearance,
+                            const SkipOptions& skip, bool exact) {
+    Result<Scene> scene = Scene::create(volume, device(), exact);
+    EXPECT_TRUE(scene.has_value()) << (scene ? "" : scene.error().detail);
+    const Result<void> shown = show(*scene, appearance, skip);
+    EXPECT_TRUE(shown.has_value()) << (shown ? "" : shown.error().detail);
+    return std::move(*scene);
 }
 
 FramePlan RenderTest::decide(const Scene& scene, const Settings& settings) {

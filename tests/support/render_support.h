@@ -10,6 +10,7 @@
 #include "core/draw/renderer.h"
 #include "core/gl/color_targets.h"
 #include "core/scene/texel_format.h"
+#include "perf/stability/appearance.h"
 #include "perf/stability/reference_picture.h"
 #include "tests/support/gl_fixture.h"
 
@@ -94,8 +95,9 @@ protected:
     Renderer& renderer();
     const std::vector<TexelFormatTest>& formats();
 
-    Scene makeScene(const Volume& volume, const Look& look, const SkipOptions& skip = {},
-                    bool exact = false);
+    Device device(DeviceOptions options = {});
+    Scene makeScene(const Volume& volume, const Appearance& appearance,
+                    const SkipOptions& skip = {}, bool exact = false);
     FramePlan decide(const Scene& scene, const Settings& settings);
     /// Prepares and draws into a target of the plan's format.
     Picture draw(const Scene& scene, const FramePlan& plan, const View& view, glm::ivec2 size,

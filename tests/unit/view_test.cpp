@@ -80,7 +80,7 @@ TEST(Frustum, IsReadFromGlsMatrices) {
         const glm::dmat4 m = glm::frustum(f.left * n, f.right * n, f.bottom * n, f.top * n, n,
                                           n * dice.logUniform(2.0, 1e5));
         const double widest = std::max({-f.left, f.right, -f.bottom, f.top});
-        expectNear(frustumOf(m), f, 1e-13 * widest);
+        expectNear(frustumOf(m).value(), f, 1e-13 * widest);
         // The GL's own rule: the edges are what lands on -1 and +1.
         const glm::dvec4 corner = m * glm::dvec4(f.left * n, f.top * n, -n, 1.0);
         EXPECT_NEAR(corner.x / corner.w, -1.0, 1e-12);
@@ -91,10 +91,61 @@ TEST(Frustum, IsReadFromGlsMatrices) {
 TEST(Frustum, SymmetricIsGlusPerspective) {
     for (const double fov : {1.0, 40.0, 90.0, 170.0}) {
         const Frustum f = symmetricFrustum(fov, 1.6);
-        expectNear(frustumOf(glm::perspective(fov * M_PI / 180.0, 1.6, 0.1, 10.0)), f, 1e-12);
+        expectNear(frustumOf(glm::perspective(fov * M_PI / 180.0, 1.6, 0.1, 10.0)).value(), f,
+                   1e-12);
         EXPECT_NEAR(std::atan(f.top) * 2.0 * 180.0 / M_PI, fov, 1e-12);
         EXPECT_EQ(f.left, -f.right);
         EXPECT_EQ(f.bottom, -f.top);
+    }
+}
+
+TEST(Frustum, OfNoPerspectiveIsRefused) {
+    const double nan = std::nan("");
+    glm::dmat4 mirrored = glm::perspective(1.0, 1.6, 0.1, 10.0);
+    mirrored[1][1] *= -1.0;
+    glm::dmat4 broken = glm::perspective(1.0, 1.6, 0.1, 10.0);
+    broken[2][0] = nan;
+    for (const glm::dmat4& m : {glm::ortho(-1.0, 1.0, -1.0, 1.0, 0.1, 10.0), glm::dmat4(1.0),
+                                glm::dmat4(0.0), mirrored, broken}) {
+        const Result<Frustum> frustum = frustumOf(m);
+        ASSERT_FALSE(frustum.has_value());
+        EXPECT_EQ(frustum.error().code, ErrorCode::InvalidArgument);
+    }
+}
+
+TEST(View, OfWhichNoPictureCanBeMadeIsRefused) {
+    const double nan = std::nan("");
+    const View good{.viewFromModel = viewFromModel({30.0, 20.0, 3.0}, kSphere)};
+    EXPECT_TRUE(check(good).has_value());
+    const auto changed = [&](auto change) {
+        View view = good;
+        change(view);
+        return view;
+    };
+    const View bad[] = {
+        changed([=](View& v) { v.viewFromModel[1][2] = nan; }),
+        changed([=](View& v) { v.viewFromModel[3][0] = HUGE_VAL; }),
+        changed([](View& v) { v.viewFromModel = glm::dmat4(0.0); }),
+        changed([](View& v) { v.viewFromModel[2] = v.viewFromModel[1]; }),
+        changed([](View& v) { v.viewFromModel = glm::perspective(1.0, 1.0, 0.1, 10.0); }),
+        changed([](View& v) { v.frustum.right = v.frustum.left; }),
+        changed([](View& v) { std::swap(v.frustum.bottom, v.frustum.top); }),
+        changed([=](View& v) { v.frustum.top = nan; }),
+        changed([](View& v) { v.nearDepth = -1.0; }),
+        changed([=](View& v) { v.nearDepth = nan; })};
+    for (std::size_t k = 0; k < std::size(bad); ++k) {
+        const Result<void> ok = check(bad[k]);
+        ASSERT_FALSE(ok.has_value()) << k;
+        EXPECT_EQ(ok.error().code, ErrorCode::InvalidArgument) << k;
+    }
+}
+
+TEST(View, MayBeOfAnyUnitOfLength) {
+    View view{.viewFromModel = viewFromModel({30.0, 20.0, 3.0}, kSphere)};
+    for (const double scale : {1e-9, 1.0, 1e9}) {
+        view.viewFromModel = glm::scale(glm::dmat4(1.0), glm::dvec3(scale)) *
+                             viewFromModel({30.0, 20.0, 3.0}, kSphere);
+        EXPECT_TRUE(check(view).has_value()) << scale;
     }
 }
 

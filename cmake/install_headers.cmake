@@ -1,0 +1,22 @@
+# Run as the package is installed: lays down the headers that applications include and those that they name in turn.
+# What no public header names stays inside. Takes SOURCE, INCLUDE_DIR and HEADERS, those that applications include.
+set(known)
+cmake_policy(VERSION 3.22)
+while(HEADERS)
+    list(POP_FRONT HEADERS header)
+    if(header IN_LIST known)
+        continue()
+    endif()
+    list(APPEND known ${header})
+    file(STRINGS ${SOURCE}/${header} lines REGEX "^#include \"(core|platform)/")
+    foreach(line IN LISTS lines)
+        string(REGEX REPLACE "^#include \"([^\"]*)\".*" "\\1" included "${line}")
+        list(APPEND HEADERS ${included})
+    endforeach()
+    # Includes keep their form, "core/volume/volume.h" here and there; the way in lies where its name says.
+    get_filename_component(folder ${header} DIRECTORY)
+    if(header STREQUAL "core/slabcast.h")
+        set(folder ".")
+    endif()
+    file(INSTALL ${SOURCE}/${header} DESTINATION ${INCLUDE_DIR}/${folder})
+endwhile()
