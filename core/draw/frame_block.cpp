@@ -68,7 +68,6 @@ void fillShading(FrameBlock& block, const ShadingParameters& shading,
 } // namespace
 
 FrameBlock makeFrameBlock(const RayFrame& f, const Scene& scene, const FramePlan& plan) {
-    const bool shells = f.lattice.kind == LatticeKind::Shells;
     FrameBlock block{};
     block.centre0 = packed(f.centre0, f.lattice.total / 2.0);
     block.centreX = packed(f.centreX, (f.nearDepth - f.sphereCentre.z) / f.spacing);
@@ -81,7 +80,7 @@ FrameBlock makeFrameBlock(const RayFrame& f, const Scene& scene, const FramePlan
     block.miss = glm::vec4(glm::dvec4(f.tangent0 * f.sphereCentre.z - glm::dvec2(f.sphereCentre),
                                       f.tangentPerPixel * f.sphereCentre.z));
     block.viewport = glm::vec4(
-        glm::dvec4(f.viewportCentre, shells ? 1.0 : 0.0,
+        glm::dvec4(f.viewportCentre, 0.0,
                    plan.variant.fetchesTarget ? saturatedAlpha(plan) : plan.terminationAlpha));
     const TableAxis axis = tableAxis(scene.texels(), scene.table());
     const ClassifiedTexels* classified = scene.classified();
@@ -101,7 +100,7 @@ FrameBlock makeFrameBlock(const RayFrame& f, const Scene& scene, const FramePlan
         fillShading(block, *scene.look().shading, scene.geometry(), scene.texels().valueScale);
     }
     block.counts.y = plan.layersPerPlane;
-    block.jitter = {glm::ivec2(f.viewportCorner), f.lattice.jittered ? 1 : 0, 0};
+    block.jitter = {glm::ivec2(f.viewportCorner), 0, 0};
     return block;
 }
 

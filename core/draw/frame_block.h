@@ -1,39 +1,30 @@
 #pragma once
 
 #include <array>
+#include <type_traits>
 
 #include <glm/glm.hpp>
 
+#include "core/plan/frame_fields.h"
 #include "core/plan/frame_plan.h"
 #include "core/skip/skip_layout.h"
 #include "core/view/lattice.h"
 
 namespace slabcast {
 
-/// The uniform block of gles_shaders/frame.glsl, std140: vec4 and ivec4 only, in its order. Change
-/// both.
+/// The shaders' uniform block: members as core/plan/frame_fields.h lists them.
 struct FrameBlock {
-    glm::vec4 centre0, centreX, centreY;
-    glm::vec4 direction0, directionX, directionY;
-    glm::vec4 tangent;
-    glm::vec4 sphere;
-    glm::vec4 miss;
-    glm::vec4 viewport;
-    glm::vec4 tableMap;
-    std::array<glm::vec4, 2> tableEnds;
-    glm::vec4 skipMap;
-    glm::vec4 decode;
-    std::array<glm::vec4, 3> gradientRow;
-    std::array<glm::vec4, 3> patientRow;
-    glm::vec4 material;
-    glm::ivec4 counts;
-    glm::ivec4 skipBlocks;
-    glm::ivec4 octree;
-    glm::uvec4 nodeTest;
-    glm::ivec4 jitter;
-    std::array<glm::ivec4, kMaxOctreeLevels> octreeLevels;
+    using vec4 = glm::vec4;
+    using ivec4 = glm::ivec4;
+    using uvec4 = glm::uvec4;
+    template <class T, int number>
+    using Field = std::conditional_t<number == 1, T, std::array<T, number>>;
+
+#define SLABCAST_MEMBER(type, name, number) Field<type, number> name;
+    SLABCAST_FRAME_FIELDS(SLABCAST_MEMBER)
+#undef SLABCAST_MEMBER
 };
-static_assert(sizeof(FrameBlock) == 16 * (27 + kMaxOctreeLevels));
+static_assert(sizeof(FrameBlock::octreeLevels) == kMaxOctreeLevels * sizeof(glm::ivec4));
 
 class Scene;
 

@@ -8,7 +8,7 @@ Result<const gl::Program*> ProgramCache::need(const ShaderVariant& variant) {
     if (const gl::Program* known = find(variant)) {
         return known;
     }
-    const Result<ShaderPair> text = shaderText(variant);
+    const Result<ShaderPair> text = shaderText(variant, measuring_);
     if (!text) {
         return tl::unexpected(text.error());
     }

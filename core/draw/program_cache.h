@@ -11,6 +11,8 @@ namespace slabcast {
 /// The variants that were compiled, connected to the drawer's blocks and samplers; all are kept.
 class ProgramCache {
 public:
+    explicit ProgramCache(const MeasuringText& measuring = {}) : measuring_(measuring) {}
+
     /// Compiles where that was not done yet. Fails: ShaderCompile.
     Result<const gl::Program*> need(const ShaderVariant& variant);
     /// Nothing where it was not compiled.
@@ -18,6 +20,7 @@ public:
     void forget();
 
 private:
+    MeasuringText measuring_; // of all texts
     std::map<ShaderVariant, gl::Program> programs_;
 };
 

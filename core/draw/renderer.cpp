@@ -13,6 +13,7 @@
 #include "core/gl/api.h"
 #include "core/gl/color_targets.h"
 #include "core/gl/state_guard.h"
+#include "core/plan/shader_resources.h"
 #include "core/scene/gpu_scene.h"
 #include "core/skip/gpu/gpu_built_skip.h"
 
@@ -126,7 +127,12 @@ Result<Renderer> Renderer::create(const gl::Caps& caps) {
 }
 
 Result<Renderer> Renderer::create(const Device& device) {
+    return create(device, {});
+}
+
+Result<Renderer> Renderer::create(const Device& device, const MeasuringText& measuring) {
     auto state = std::make_unique<State>(device);
+    state->programs = ProgramCache(measuring);
     const gl::StateGuard guard;
     if (Result<void> done = state->createFixed(); !done) {
         return tl::unexpected(done.error());
@@ -386,9 +392,10 @@ Result<void> Renderer::State::count(const Scene& scene, const FramePlan& plan,
     for (const PlaneRun& run : runs) {
         useBlending(GL_ONE, GL_ONE);
         if (needsPicture) {
-            gl::ActiveTexture(GL_TEXTURE0 + StackDrawer::kLayerUnit);
+            constexpr GLuint kUnit = unitOf(Sampler::LayerBefore);
+            gl::ActiveTexture(GL_TEXTURE0 + kUnit);
             gl::BindTexture(GL_TEXTURE_2D, layer.texture(0));
-            gl::BindSampler(StackDrawer::kLayerUnit, 0);
+            gl::BindSampler(kUnit, 0);
         }
         drawRun(counters, plan, size, **counts, run);
         if (!needsPicture || &run == &runs.back()) {

@@ -75,6 +75,8 @@ public:
     /// Fails: ShaderCompile. Thread: the device's context is current.
     static Result<Renderer> create(const Device& device);
     static Result<Renderer> create(const gl::Caps& caps);
+    /// For measuring alone: what the programs that it makes do otherwise.
+    static Result<Renderer> create(const Device& device, const MeasuringText& measuring);
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
     ~Renderer();

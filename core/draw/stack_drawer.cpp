@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/gl/api.h"
+#include "core/plan/shader_resources.h"
 
 namespace slabcast {
 
@@ -76,11 +77,8 @@ void StackDrawer::connect(const gl::Program& program) {
         }
     }
     program.use();
-    const char* const samplers[] = {"volumeTexels", "transferTable",
-                                    "skipTexels", // up to here GpuScene::bind()
-                                    "layerBefore"};
-    for (int unit = 0; unit < 4; ++unit) {
-        gl::Uniform1i(program.uniform(samplers[unit]), unit);
+    for (std::size_t unit = 0; unit < kSamplerNames.size(); ++unit) {
+        gl::Uniform1i(program.uniform(kSamplerNames[unit]), static_cast<GLint>(unit));
     }
 }
 

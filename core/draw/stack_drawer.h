@@ -27,8 +27,6 @@ class StackDrawer {
 public:
     static constexpr GLuint kFrameBinding = 0;
     static constexpr GLuint kOutlineBinding = 1;
-    /// Texture unit of the layer that counting variants look at; GpuScene has those before it.
-    static constexpr GLuint kLayerUnit = 3;
 
     void create();
 

@@ -3,24 +3,34 @@
 #include <iterator>
 #include <set>
 #include <sstream>
+#include <string_view>
 
 namespace slabcast {
 
 namespace {
 
-/// Name in an include line, quoted or through a define; empty where the line is no include.
+/// Name in an include line, quoted or through defines; empty where the line is no include.
 std::string includedFile(const std::string& line,
                          const std::map<std::string, std::string>& defines) {
     constexpr std::string_view kInclude = "#include ";
     if (line.rfind(kInclude, 0) != 0) {
         return {};
     }
-    const std::string operand = line.substr(kInclude.size());
+    std::string operand = line.substr(kInclude.size());
     if (operand.front() == '"') {
         return operand.substr(1, operand.rfind('"') - 1);
     }
-    const auto define = defines.find(operand);
-    return define == defines.end() ? operand : define->second;
+    for (auto define = defines.find(operand); define != defines.end();
+         define = defines.find(operand)) {
+        operand = define->second;
+    }
+    return operand;
+}
+
+/// Choices of files are for #include alone; they are no GLSL.
+bool isFileChoice(std::string_view define) {
+    constexpr std::string_view kEnd = "_FILE";
+    return define.size() > kEnd.size() && define.substr(define.size() - kEnd.size()) == kEnd;
 }
 
 struct Expansion {
@@ -63,8 +73,7 @@ Result<std::string> expandShader(const std::string& file,
                                  const std::map<std::string, std::string>& defines) {
     Expansion expansion{defines, {}, "#version 320 es\n"};
     for (const auto& [key, value] : defines) {
-        // File choices are for #include alone; they are no GLSL.
-        if (value.find(".glsl") == std::string::npos) {
+        if (!isFileChoice(key)) {
             expansion.text += "#define " + key + " " + value + "\n";
         }
     }

@@ -7,6 +7,7 @@
 
 #include "core/gl/caps.h"
 #include "core/plan/needs.h"
+#include "core/plan/reasons.h"
 #include "core/plan/settings.h"
 #include "core/plan/shader_variant.h"
 #include "core/transfer/transfer_function.h"
@@ -46,16 +47,12 @@ struct RatioMeasurement {
     double frameMs = 0.0;
 };
 
-struct Reason {
-    std::string what;
-    std::string why;
-
-    bool operator==(const Reason&) const = default;
-};
+/// As many as ratioCandidates() gives.
+inline constexpr std::size_t kMostRatios = 12;
 
 /// Everything that a frame does, decided. Two pictures are of the same settings when their plans
-/// are equal: in everything but what the plan is made from (needs, look) and the reasons, which
-/// hold what was measured.
+/// are equal: in everything but what the plan is made from (needs, look, measured) and the reasons.
+/// Plain data, nothing on the heap.
 struct FramePlan {
     Needs needs;  // what the settings ask to be built: needsOf()
     int look = 0; // that it was made for: it draws no other
@@ -71,7 +68,8 @@ struct FramePlan {
     BlendOrder order = BlendOrder::BackToFront;
     int planesPerMark = 0; // front to back: planes between marks of saturated pixels; 0: no marks
     bool drawsNothing = false;
-    std::vector<Reason> reasons;
+    Reasons reasons;                                   // in words: explained()
+    ShortList<RatioMeasurement, kMostRatios> measured; // what the ratio was chosen from
 
     bool operator==(const FramePlan& other) const;
 };

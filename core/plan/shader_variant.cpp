@@ -1,61 +1,63 @@
 #include "core/plan/shader_variant.h"
 
 #include <algorithm>
+#include <map>
+
+#include "core/gl/shader_text.h"
+#include "core/plan/frame_fields.h"
+#include "core/plan/shader_axes.h"
 
 namespace slabcast {
 
 namespace {
 
-struct ClassificationInfo {
-    Classification classification;
-    const char* name;
-    const char* shaderFile;
-};
+static_assert(std::size(kAxes) == static_cast<std::size_t>(Axis::Form) + 1);
+static_assert(std::size(axes::kForm) == kUnrollLengths.size() + 1);
 
-constexpr std::array<ClassificationInfo, 3> kClassifications = {{
-    {Classification::Post, "post", "segment/classification/post.glsl"},
-    {Classification::Pre, "preclassified", "segment/classification/preclassified.glsl"},
-    {Classification::Preintegrated, "preintegrated", "segment/classification/preintegrated.glsl"},
-}};
-
-/// The files of one form of skipping; what a form does not include is null.
-struct SkipFiles {
-    const char* skip;
-    const char* node;
-};
-
-constexpr std::array<SkipFiles, 6> kSkipFiles = {{
-    {"segment/skip/none.glsl", nullptr},
-    {"segment/skip/balls.glsl", nullptr},
-    {"segment/skip/boxes.glsl", nullptr},
-    {"segment/skip/octree.glsl", "segment/skip/node_bits.glsl"},
-    {"segment/skip/octree.glsl", "segment/skip/node_wide.glsl"},
-    {"segment/skip/octree.glsl", "segment/skip/node_range.glsl"},
-}};
-
-const ClassificationInfo& infoOf(Classification classification) {
-    const auto index = static_cast<std::size_t>(classification);
-    SLABCAST_EXPECTS(index < kClassifications.size(), index);
-    return kClassifications[index];
+const AxisValue& valueOn(const AxisInfo& axis, const ShaderVariant& variant) {
+    const std::size_t value = axis.valueOf(variant);
+    SLABCAST_EXPECTS(value < axis.count, value);
+    return axis.values[value];
 }
 
-const char* targetFileOf(const ShaderVariant& v) {
-    constexpr const char* kFiles[2][2] = {
-        {"segment/output/blended.glsl", "segment/output/fetched.glsl"},
-        {"segment/output/counted.glsl", "segment/output/counted_behind.glsl"}};
-    return kFiles[v.counts ? 1 : 0][v.fetchesTarget ? 1 : 0];
+const AxisInfo& infoOf(Axis axis) {
+    return kAxes[static_cast<std::size_t>(axis)];
 }
 
-const char* terminateFileOf(const ShaderVariant& v) {
-    return v.fetchesTarget ? "segment/termination/across.glsl"
-           : v.terminates  ? "segment/termination/early.glsl"
-                           : "segment/termination/none.glsl";
+bool met(const Requirement& requirement, const ShaderVariant& variant) {
+    const auto& among = requirement.among;
+    return infoOf(requirement.axis).valueOf(variant) != requirement.value ||
+           std::find(among.begin(), among.end(), infoOf(requirement.other).valueOf(variant)) !=
+               among.end();
+}
+
+/// The members of the uniform block, on one line.
+std::string frameFields() {
+    const auto member = [](const char* type, const char* name, int number) {
+        return std::string(type) + " " + name +
+               (number > 1 ? "[" + std::to_string(number) + "]; " : "; ");
+    };
+    std::string text;
+#define SLABCAST_MEMBER(type, name, number) text += member(#type, #name, number);
+    SLABCAST_FRAME_FIELDS(SLABCAST_MEMBER)
+#undef SLABCAST_MEMBER
+    return text;
+}
+
+std::string layersWrittenOut(int count) {
+    std::string text;
+    for (int k = 0; k < count; ++k) {
+        text += "X(" + std::to_string(k) + ") ";
+    }
+    return text;
 }
 
 } // namespace
 
 const char* name(Classification classification) {
-    return infoOf(classification).name;
+    const auto index = static_cast<std::size_t>(classification);
+    SLABCAST_EXPECTS(index < std::size(axes::kClassification), index);
+    return axes::kClassification[index].name;
 }
 
 int unrollLengthFor(int layersPerPlane) {
@@ -64,76 +66,59 @@ int unrollLengthFor(int layersPerPlane) {
     return fit == kUnrollLengths.end() ? 0 : *fit;
 }
 
-std::string name(const ShaderVariant& v) {
-    std::string text = name(v.classification);
-    text += v.skip == SkipForm::None ? "" : std::string("+") + name(v.skip);
-    text += v.shaded ? "+shaded" : "";
-    text += v.exactField ? "+exact" : "";
-    text += v.terminates ? "+terminate" : "";
-    text += v.fetchesTarget ? "+fetch" : "";
-    text += v.counts ? "+counts" : "";
-    text += v.halfGroups != 0 ? "+half" + std::to_string(v.halfGroups) : "";
-    return text + (v.unroll == 0 ? "/loop" : "/unroll" + std::to_string(v.unroll));
+bool ShaderVariant::valid() const {
+    return std::all_of(std::begin(kAxes), std::end(kAxes),
+                       [this](const AxisInfo& axis) { return axis.valueOf(*this) < axis.count; }) &&
+           std::all_of(std::begin(kRequirements), std::end(kRequirements),
+                       [this](const Requirement& one) { return met(one, *this); });
 }
 
-std::vector<ShaderVariant> allVariants() {
-    std::vector<int> lengths(kUnrollLengths.begin(), kUnrollLengths.end());
-    lengths.push_back(0);
-    std::vector<ShaderVariant> variants;
-    for (const int length : lengths) {
-        for (const ClassificationInfo& info : kClassifications) {
-            for (std::size_t bits = 0; bits < 32 * kSkipFiles.size(); ++bits) {
-                const auto bit = [bits](int k) { return (bits >> k & 1) != 0; };
-                ShaderVariant v{.classification = info.classification,
-                                .skip = static_cast<SkipForm>(bits >> 5),
-                                .shaded = bit(1),
-                                .exactField = bit(2),
-                                .terminates = bit(3),
-                                .fetchesTarget = bit(0),
-                                .unroll = length,
-                                .counts = bit(4)};
-                if (!v.valid()) {
-                    continue;
-                }
-                variants.push_back(v);
-                if (v.unroll == 0 && !v.counts) {
-                    v.halfGroups = kHalfAll;
-                    variants.push_back(v);
-                }
+std::string name(const ShaderVariant& variant) {
+    std::string text;
+    for (const AxisInfo& axis : kAxes) {
+        text += valueOn(axis, variant).suffix;
+    }
+    return text;
+}
+
+std::vector<std::string> samplersOf(const ShaderVariant& variant) {
+    std::vector<std::string> names;
+    for (const AxisInfo& axis : kAxes) {
+        const AxisValue& value = valueOn(axis, variant);
+        for (const Sampler sampler : value.samplers) {
+            names.emplace_back(kSamplerNames[unitOf(sampler)]);
+        }
+        for (const Sampler sampler : value.samplersCounting) {
+            if (variant.counts) {
+                names.emplace_back(kSamplerNames[unitOf(sampler)]);
             }
         }
     }
-    return variants;
+    std::sort(names.begin(), names.end());
+    return names;
 }
 
-Result<ShaderPair> shaderText(const ShaderVariant& v) {
-    SLABCAST_EXPECTS(v.valid(), v.unroll);
+Result<ShaderPair> shaderText(const ShaderVariant& variant, const MeasuringText& measuring) {
+    SLABCAST_EXPECTS(variant.valid(), variant.unroll);
+    const bool rounds = measuring.halfGroups != 0;
     std::map<std::string, std::string> defines = {
         {"MAX_OUTLINES", std::to_string(kMaxOutlines)},
-        {"COUNT_FILE", v.counts ? "segment/counting/work.glsl" : "segment/counting/none.glsl"},
-        {"MEDIUM_FILE",
-         v.halfGroups == 0 ? "segment/precision/exact.glsl" : "segment/precision/half.glsl"},
-        {"HALF_GROUPS", std::to_string(v.halfGroups)},
-        {"FIELD_FILE", v.exactField ? "segment/field/exact.glsl" : "segment/field/filtered.glsl"},
-        {"SHADE_FILE", v.shaded ? "segment/shading/phong.glsl" : "segment/shading/none.glsl"},
-        {"CLASSIFY_FILE", infoOf(v.classification).shaderFile},
-        {"TARGET_FILE", targetFileOf(v)},
-        {"TERMINATE_FILE", terminateFileOf(v)},
-        {"MARCH_FILE", v.unroll == 0 ? "segment/form/loop.glsl" : "segment/form/unrolled.glsl"},
+        {"FRAME_FIELDS", frameFields()},
+        {"PRECISION_FILE", rounds ? "segment/precision/half.glsl" : "segment/precision/exact.glsl"},
     };
-    const SkipFiles& files = kSkipFiles[static_cast<std::size_t>(v.skip)];
-    defines["SKIP_FILE"] = files.skip;
-    if (files.node != nullptr) {
-        defines["NODE_FILE"] = files.node;
+    if (rounds) {
+        defines["HALF_GROUPS"] = std::to_string(measuring.halfGroups);
     }
-    if (v.unroll > 0) {
-        std::string layers;
-        for (int k = 0; k < v.unroll; ++k) {
-            layers += "X(" + std::to_string(k) + ") ";
+    for (const AxisInfo& axis : kAxes) {
+        const AxisValue& value = valueOn(axis, variant);
+        for (const SlotFile& slot : value.files) {
+            defines[slot.slot] = slot.file;
         }
-        defines["REPEAT_LAYERS(X)"] = layers;
+        if (value.layersWrittenOut > 0) {
+            defines["REPEAT_LAYERS(X)"] = layersWrittenOut(value.layersWrittenOut);
+        }
     }
-    Result<std::string> vertex = expandShader("cover/plane.vert", defines);
+    Result<std::string> vertex = expandShader(defines.at("COVER_FILE"), defines);
     Result<std::string> fragment = expandShader("segment/segment.frag", defines);
     if (!vertex || !fragment) {
         return tl::unexpected(vertex ? fragment.error() : vertex.error());

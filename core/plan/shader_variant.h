@@ -5,21 +5,23 @@
 #include <string>
 #include <vector>
 
-#include "core/gl/shader_text.h"
+#include "core/base/error.h"
 #include "core/skip/skip_structure.h"
+#include "core/view/lattice.h"
 
 namespace slabcast {
 
 enum class Classification : std::uint8_t { Post, Pre, Preintegrated };
+/// What gives a value its colour and extinction.
+enum class Material : std::uint8_t { Transfer };
+/// What a ray's stay is cut to.
+enum class Interval : std::uint8_t { Box };
+/// What is made of a ray's layers.
+enum class Accumulate : std::uint8_t { Composite };
+/// What puts a plane's polygon where it lies: 10-gons around the sphere, or rectangles.
+enum class Cover : std::uint8_t { Planes };
 
 const char* name(Classification classification);
-
-/// Groups of operations that a device may do in 16 bits: a layer's opacity from its depth; the sum
-/// of layers; colours between the table's, and premultiplied; light; extinction between the
-/// table's.
-inline constexpr int kHalfOpacity = 1, kHalfSum = 2, kHalfColor = 4, kHalfLight = 8;
-inline constexpr int kHalfExtinction = 16;
-inline constexpr int kHalfAll = 31;
 
 /// Lengths of segments that are written out layer by layer.
 inline constexpr std::array<int, 10> kUnrollLengths = {1, 2, 4, 8, 12, 16, 24, 32, 48, 64};
@@ -28,25 +30,9 @@ inline constexpr std::array<int, 10> kUnrollLengths = {1, 2, 4, 8, 12, 16, 24, 3
 /// form serves.
 int unrollLengthFor(int layersPerPlane);
 
-// clang-format off
-/// Which segment shader. A field exists only where it changes loop structure, resources or outputs;
-/// all else is a uniform, and what a field switches off is absent from the text.
-///
-/// | field          | off                            | on                                             |
-/// |----------------|--------------------------------|------------------------------------------------|
-/// | classification | Post: field + table            | Pre: one RGBA8 texture, colours baked;         |
-/// |                |                                | Preintegrated: field + table of both ends      |
-/// | skip           | None                           | one more texture, tests per segment and        |
-/// |                |                                | stretch: Balls, Boxes, or an octree's nodes    |
-/// | shaded         | colour as classified           | 6 more fields per visible sample (Post only)   |
-/// | exactField     | texture unit's filter          | 8 fetches, float32 (not Pre)                   |
-/// | terminates     | every layer                    | leaves when nearly opaque                      |
-/// | fetchesTarget  | sees its own segment           | sees what is drawn before it and leaves when   |
-/// |                |                                | both together are (front to back; terminates)  |
-/// | unroll         | 0: loop                        | layers written out, from kUnrollLengths        |
-/// | counts         | draws                          | writes work counters instead of colour         |
-/// | halfGroups     | 0: float32                     | these rounded to fp16: what mediump may do     |
-// clang-format on
+/// Which segment shader: a value of each axis in shader_axes.h, where each axis is explained. A
+/// field exists only where it changes loop structure, resources, stages or outputs; all else is a
+/// uniform, and what a field switches off is absent from the text.
 struct ShaderVariant {
     Classification classification = Classification::Post;
     SkipForm skip = SkipForm::None;
@@ -54,37 +40,37 @@ struct ShaderVariant {
     bool exactField = false;
     bool terminates = false;
     bool fetchesTarget = false;
-    int unroll = 0;
+    int unroll = 0; // 0: a loop; else one of kUnrollLengths
     bool counts = false;
-    int halfGroups = 0; // sum of kHalf...; for measuring
+    LatticeKind lattice = LatticeKind::Planar;
+    bool jittered = false;
+    Material material = Material::Transfer;
+    Interval interval = Interval::Box;
+    Accumulate accumulate = Accumulate::Composite;
+    Cover cover = Cover::Planes;
 
     bool operator==(const ShaderVariant&) const = default;
     auto operator<=>(const ShaderVariant&) const = default;
 
-    constexpr bool valid() const {
-        const bool listed = [this] {
-            for (const int length : kUnrollLengths) {
-                if (length == unroll) {
-                    return true;
-                }
-            }
-            return unroll == 0;
-        }();
-        const bool shadable = classification == Classification::Post;
-        const bool hasField = classification != Classification::Pre;
-        const bool measured =
-            halfGroups == 0 || (halfGroups > 0 && halfGroups <= kHalfAll && unroll == 0 && !counts);
-        return listed && measured && (shadable || !shaded) && (hasField || !exactField) &&
-               (terminates || !fetchesTarget);
-    }
+    /// Whether a shader of these values exists. Tested by: shader_variant_test.cpp
+    bool valid() const;
 };
 
-/// As logs and statistics show it: "post+balls+shaded+terminate/unroll16".
+/// As logs and statistics show it: "post+balls+shaded+terminate/unroll16". Lattice and jitter are
+/// stated beside it.
 std::string name(const ShaderVariant& variant);
 
-/// All valid variants; of those that round to fp16, all groups at once in the loop form. For the
-/// test that walks them.
-std::vector<ShaderVariant> allVariants();
+/// Groups of operations that a device may do in 16 bits: a layer's opacity from its depth; the sum
+/// of layers; colours between the table's, and premultiplied; light; extinction between the
+/// table's.
+inline constexpr int kHalfOpacity = 1, kHalfSum = 2, kHalfColor = 4, kHalfLight = 8;
+inline constexpr int kHalfExtinction = 16;
+inline constexpr int kHalfAll = 31;
+
+/// What measuring changes in a variant's text, and nothing that is drawn for a user.
+struct MeasuringText {
+    int halfGroups = 0; // sum of kHalf...: these results are rounded to fp16, as mediump may be
+};
 
 /// Planes whose outlines fit the uniform block that every GLES 3.2 device has (16 KiB).
 inline constexpr int kMaxOutlines = 1024;
@@ -94,6 +80,12 @@ struct ShaderPair {
     std::string fragment;
 };
 
-Result<ShaderPair> shaderText(const ShaderVariant& variant);
+/// Both stages, whole. Contract: the variant is valid. Fails: ShaderCompile (a file is missing).
+/// Tested by: shader_variant_test.cpp, shader_validator_test.cpp
+Result<ShaderPair> shaderText(const ShaderVariant& variant, const MeasuringText& measuring = {});
+
+/// The textures that a variant's program reads, by name, in alphabetical order.
+/// Tested by: renderer_work_gl_test.cpp
+std::vector<std::string> samplersOf(const ShaderVariant& variant);
 
 } // namespace slabcast

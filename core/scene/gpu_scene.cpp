@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/plan/shader_resources.h"
 #include "core/scene/volume_texture.h"
 
 namespace slabcast {
@@ -234,14 +235,17 @@ std::int64_t GpuScene::skipBytes() const {
 void GpuScene::bind(const BuiltSkip& skip) const {
     const HeldSkip* skipTexture = held(skip);
     const struct {
+        Sampler sampler;
         GLenum target;
         GLuint id;
-    } units[] = {{GL_TEXTURE_3D, volume_.id()},
-                 {GL_TEXTURE_2D, table_.id()},
-                 {GL_TEXTURE_3D, skipTexture != nullptr ? skipTexture->texture.texture.id() : 0}};
-    for (GLuint unit = 0; unit < 3; ++unit) {
+    } textures[] = {{Sampler::Volume, GL_TEXTURE_3D, volume_.id()},
+                    {Sampler::Table, GL_TEXTURE_2D, table_.id()},
+                    {Sampler::Skip, GL_TEXTURE_3D,
+                     skipTexture != nullptr ? skipTexture->texture.texture.id() : 0}};
+    for (const auto& one : textures) {
+        const GLuint unit = unitOf(one.sampler);
         gl::ActiveTexture(GL_TEXTURE0 + unit);
-        gl::BindTexture(units[unit].target, units[unit].id);
+        gl::BindTexture(one.target, one.id);
         gl::BindSampler(unit, 0);
     }
 }

@@ -26,8 +26,7 @@ public:
     /// Whether the textures are those of this scene, its look and this plan.
     bool serve(const Scene& scene, const FramePlan& plan) const;
 
-    /// Texture units: 0 the volume (scalars or pre-classified), 1 the table, 2 the skip structure,
-    /// where it was uploaded.
+    /// Each to its unit of core/plan/shader_resources.h; the skip structure where it was uploaded.
     void bind(const BuiltSkip& skip) const;
 
     std::int64_t volumeBytes() const { return volumeBytes_; }

@@ -12,11 +12,3 @@ float opacityOfDepth(float depth) {
     precise float difference = inOpacity(1.0 - inOpacity(exp(-d)));
     return d < 0.03125 ? series : difference;
 }
-
-/// Front to back: what a layer adds to what is before it. Precise, as is all that decides a pixel:
-/// variants are different programs, and a compiler that fused one and not the other would make
-/// skipping change the last bit.
-vec4 composited(vec4 sum, vec4 layer) {
-    precise vec4 result = inSum(sum + inSum(inSum(1.0 - sum.a) * layer));
-    return result;
-}

@@ -7,11 +7,6 @@ namespace slabcast::stability {
 
 namespace {
 
-bool warns(const FramePlan& plan) {
-    return std::any_of(plan.reasons.begin(), plan.reasons.end(),
-                       [](const Reason& r) { return r.what == "warning"; });
-}
-
 double brightest(const Picture& picture) {
     double most = 0.0;
     for (const glm::vec4& pixel : picture.pixels) {

@@ -107,24 +107,26 @@ constexpr Group kGroups[] = {
      "what the shaders declare mediump must stay below half a step of 8 bits"}};
 
 /// Into float32, so that the target's own rounding does not hide the segment's.
-Result<Picture> drawn(Bench& bench, const Scene& scene, const FramePlan& plan, const View& view) {
+Result<Picture> drawn(Renderer& renderer, const Scene& scene, const FramePlan& plan,
+                      const View& view) {
     gl::ColorTargets target;
     if (Result<void> made = target.resize(kSize.x, kSize.y, {GL_RGBA32F}); !made) {
         return tl::unexpected(made.error());
     }
     target.begin();
     const ViewTarget where{view, target.framebuffer(), {0, 0, kSize.x, kSize.y}};
-    if (Result<void> ready = bench.renderer().prepare(scene, plan, {&where, 1}); !ready) {
+    if (Result<void> ready = renderer.prepare(scene, plan, {&where, 1}); !ready) {
         return tl::unexpected(ready.error());
     }
-    if (Result<void> done = bench.renderer().draw(scene, plan, {&where, 1}); !done) {
+    if (Result<void> done = renderer.draw(scene, plan, {&where, 1}); !done) {
         return tl::unexpected(done.error());
     }
     return Picture{kSize, target.read()};
 }
 
-void measure(Bench& bench, const Scene& scene, const HalfScene& setup, const Group& group,
-             const Method& method) {
+/// `rounding`: whose programs round the group.
+void measure(Bench& bench, Renderer& rounding, const Scene& scene, const HalfScene& setup,
+             const Group& group, const Method& method) {
     Settings settings = settingsOf(method);
     settings.layerSpacingVoxels = setup.layerSpacingVoxels;
     settings.form = SegmentForm::Loop;
@@ -140,10 +142,8 @@ void measure(Bench& bench, const Scene& scene, const HalfScene& setup, const Gro
     if (!plan) {
         return bench.recordFailure(result, plan.error());
     }
-    FramePlan rounded = *plan;
-    rounded.variant.halfGroups = group.bits;
-    const Result<Picture> exact = drawn(bench, scene, *plan, view);
-    const Result<Picture> half = drawn(bench, scene, rounded, view);
+    const Result<Picture> exact = drawn(bench.renderer(), scene, *plan, view);
+    const Result<Picture> half = drawn(rounding, scene, *plan, view);
     if (!exact || !half) {
         return bench.recordFailure(result, exact ? half.error() : exact.error());
     }
@@ -160,6 +160,28 @@ void measure(Bench& bench, const Scene& scene, const HalfScene& setup, const Gro
     bench.record(std::move(result));
 }
 
+void measureGroup(Bench& bench, Renderer& rounding, const Group& group) {
+    for (const HalfScene& setup : scenes(bench.reduced())) {
+        const Volume volume = formulaVolume(glm::ivec3(48), VoxelType::U16, setup.formula);
+        Appearance look{.tf = setup.tf};
+        if (group.shaded) {
+            look.shading = ShadingParameters{};
+        }
+        const Result<Scene> scene = bench.scene(volume, look, {SkipStructure::None});
+        if (!scene) {
+            bench.recordFailure(
+                {.family = "half-precision", .name = named({group.name, setup.name})},
+                scene.error());
+            continue;
+        }
+        for (const Method& method : methods()) {
+            if (method.target == TargetFormat::Rgba16f) {
+                measure(bench, rounding, *scene, setup, group, method);
+            }
+        }
+    }
+}
+
 } // namespace
 
 void halfPrecisionCases(Bench& bench) {
@@ -168,26 +190,14 @@ void halfPrecisionCases(Bench& bench) {
             {.family = "half-precision", .name = "float32 target"},
             {ErrorCode::DeviceUnsupported, "this device does not blend float32 targets"});
     }
-    for (const HalfScene& setup : scenes(bench.reduced())) {
-        const Volume volume = formulaVolume(glm::ivec3(48), VoxelType::U16, setup.formula);
-        for (const Group& group : kGroups) {
-            Appearance look{.tf = setup.tf};
-            if (group.shaded) {
-                look.shading = ShadingParameters{};
-            }
-            const Result<Scene> scene = bench.scene(volume, look, {SkipStructure::None});
-            if (!scene) {
-                bench.recordFailure(
-                    {.family = "half-precision", .name = named({group.name, setup.name})},
-                    scene.error());
-                continue;
-            }
-            for (const Method& method : methods()) {
-                if (method.target == TargetFormat::Rgba16f) {
-                    measure(bench, *scene, setup, group, method);
-                }
-            }
+    for (const Group& group : kGroups) {
+        Result<Renderer> rounding =
+            Renderer::create(Device(bench.caps(), {}), {.halfGroups = group.bits});
+        if (!rounding) {
+            bench.recordFailure({.family = "half-precision", .name = group.name}, rounding.error());
+            continue;
         }
+        measureGroup(bench, *rounding, group);
     }
 }
 

@@ -93,9 +93,9 @@ Case caseOf(const FrugalScene& setup, const char* what, const char* quantity, co
             .reason = reason};
 }
 
-std::vector<std::string> explained(const FramePlan& plan) {
+std::vector<std::string> reasonLines(const FramePlan& plan) {
     std::vector<std::string> lines;
-    for (const Reason& reason : plan.reasons) {
+    for (const ReasonText& reason : explained(plan)) {
         lines.push_back(reason.what + ": " + reason.why);
     }
     return lines;
@@ -111,7 +111,7 @@ void recordResources(Bench& bench, const FrugalScene& setup, const Evidence& evi
                            "the driver reports exactly those that the scene needs");
     samplers.measured = double(wrong.size());
     samplers.leftOut =
-        LeftOut{.plan = explained(evidence.plan),
+        LeftOut{.plan = reasonLines(evidence.plan),
                 .activeUniforms = evidence.resources.uniforms,
                 .samplers = active,
                 .fragments = evidence.work.fragments,

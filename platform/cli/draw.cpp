@@ -266,7 +266,7 @@ nlohmann::json toJson(const VolumeInfo& info) {
 
 nlohmann::json toJson(const FramePlan& plan) {
     nlohmann::json reasons = nlohmann::json::array();
-    for (const Reason& reason : plan.reasons) {
+    for (const ReasonText& reason : explained(plan)) {
         reasons.push_back({{"what", reason.what}, {"why", reason.why}});
     }
     return {{"planes", plan.planes},

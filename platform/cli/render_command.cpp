@@ -26,7 +26,7 @@ void explain(const FramePlan& plan, const VolumeInfo& info, const Scene& scene) 
     if (scene.skip().exists()) {
         fmt::print("skip structure: {}\n", describe(scene.skip()));
     }
-    for (const Reason& reason : plan.reasons) {
+    for (const ReasonText& reason : explained(plan)) {
         fmt::print("{}: {}\n", reason.what, reason.why);
     }
 }

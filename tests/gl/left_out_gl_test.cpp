@@ -35,8 +35,9 @@ protected:
 using Names = std::vector<std::string>;
 
 bool explains(const FramePlan& plan, const std::string& what) {
-    return std::any_of(plan.reasons.begin(), plan.reasons.end(),
-                       [&](const Reason& reason) { return reason.what == what; });
+    const std::vector<ReasonText> reasons = explained(plan);
+    return std::any_of(reasons.begin(), reasons.end(),
+                       [&](const ReasonText& reason) { return reason.what == what; });
 }
 
 TEST_F(LeftOutTest, DriverReportsTheSamplersThatThePlanNeeds) {

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include <gtest/gtest.h>
 
+#include "core/plan/shader_axes.h"
 #include "tests/support/frame_scene.h"
 
 namespace slabcast {
@@ -36,11 +38,13 @@ FramePlan planned(const Settings& settings, const SceneFacts& facts = boneFacts(
     return *result;
 }
 
-/// The reason whose `what` starts like that; null where there is none.
-const Reason* reasonFor(const FramePlan& plan, const std::string& start) {
-    const auto found = std::find_if(plan.reasons.begin(), plan.reasons.end(),
-                                    [&](const Reason& r) { return r.what.rfind(start, 0) == 0; });
-    return found == plan.reasons.end() ? nullptr : &*found;
+/// The reason whose `what` starts like that, in words.
+std::optional<ReasonText> reasonFor(const FramePlan& plan, const std::string& start) {
+    const std::vector<ReasonText> reasons = explained(plan);
+    const auto found = std::find_if(reasons.begin(), reasons.end(), [&](const ReasonText& r) {
+        return r.what.rfind(start, 0) == 0;
+    });
+    return found == reasons.end() ? std::nullopt : std::optional(*found);
 }
 
 /// Any settings within their ranges.
@@ -136,10 +140,10 @@ void expectExplained(const FramePlan& p, const Settings& s, const SceneFacts& fa
         choices.push_back("exact field");
     }
     for (const std::string& choice : choices) {
-        EXPECT_NE(reasonFor(p, choice), nullptr) << choice;
+        EXPECT_NE(reasonFor(p, choice), std::nullopt) << choice;
     }
     std::set<std::string> whats;
-    for (const Reason& reason : p.reasons) {
+    for (const ReasonText& reason : explained(p)) {
         EXPECT_FALSE(reason.why.empty()) << reason.what;
         EXPECT_EQ((reason.what + reason.why).find('\n'), std::string::npos);
         whats.insert(reason.what);
@@ -193,30 +197,48 @@ TEST(FramePlan, IsEqualWhateverWasMeasuredOnTheWay) {
     const RatioMeasurement slow[] = {{ratio, 4.0}};
     const FramePlan base = *plan(boneFacts(), {}, kHeadset, fast);
     const FramePlan again = *plan(boneFacts(), {}, kHeadset, slow);
-    EXPECT_NE(base.reasons, again.reasons);
+    EXPECT_NE(explained(base), explained(again));
     EXPECT_EQ(base, again);
 }
 
 TEST(FramePlan, IsUnequalInAnyOtherMember) {
-    const auto changed = [](auto&& change) {
-        FramePlan plan = planned({});
-        change(plan);
-        return plan;
+    const std::pair<const char*, void (*)(FramePlan&)> changes[] = {
+        {"lattice", [](FramePlan& p) { p.lattice.kind = LatticeKind::Shells; }},
+        {"lattice", [](FramePlan& p) { ++p.lattice.total; }},
+        {"lattice", [](FramePlan& p) { p.lattice.spacingMm *= 2.0; }},
+        {"lattice", [](FramePlan& p) { p.lattice.jittered = true; }},
+        {"planes", [](FramePlan& p) { ++p.planes; }},
+        {"layersPerPlane", [](FramePlan& p) { ++p.layersPerPlane; }},
+        {"skip", [](FramePlan& p) { p.skip = SkipStructure::Blocks; }},
+        {"tighten", [](FramePlan& p) { p.tighten = !p.tighten; }},
+        {"target", [](FramePlan& p) { p.target = TargetFormat::Rgba16f; }},
+        {"space", [](FramePlan& p) { p.space = CompositingSpace::Linear; }},
+        {"terminationAlpha", [](FramePlan& p) { p.terminationAlpha = 0.5; }},
+        {"order", [](FramePlan& p) { p.order = BlendOrder::BackToFront; }},
+        {"planesPerMark", [](FramePlan& p) { ++p.planesPerMark; }},
+        {"drawsNothing", [](FramePlan& p) { p.drawsNothing = true; }},
     };
-    const FramePlan others[] = {
-        changed([](FramePlan& p) { p.lattice.spacingMm *= 2.0; }),
-        changed([](FramePlan& p) { ++p.planes; }),
-        changed([](FramePlan& p) { ++p.layersPerPlane; }),
-        changed([](FramePlan& p) { p.variant.counts = true; }),
-        changed([](FramePlan& p) { p.tighten = !p.tighten; }),
-        changed([](FramePlan& p) { p.target = TargetFormat::Rgba16f; }),
-        changed([](FramePlan& p) { p.space = CompositingSpace::Linear; }),
-        changed([](FramePlan& p) { p.terminationAlpha = 0.5; }),
-        changed([](FramePlan& p) { p.drawsNothing = true; }),
-    };
-    for (const FramePlan& other : others) {
-        EXPECT_NE(other, planned({})) << &other - others;
+    const FramePlan base = planned({});
+    std::set<std::string> tried = {"variant"}; // below
+    for (const char* origin : {"needs", "look", "reasons", "measured"}) {
+        tried.insert(origin); // what a plan is made from does not count
     }
+    for (const auto& [member, change] : changes) {
+        FramePlan other = base;
+        change(other);
+        EXPECT_NE(other, base) << member;
+        tried.insert(member);
+    }
+    for (const AxisInfo& axis : kAxes) {
+        for (std::size_t value = 0; value < axis.count; ++value) {
+            FramePlan other = base;
+            axis.choose(other.variant, value);
+            EXPECT_EQ(other == base, value == axis.valueOf(base.variant)) << axis.name;
+        }
+    }
+    // A new member does not compile until it is counted here, and fails until it is tried.
+    [[maybe_unused]] const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = base;
+    EXPECT_EQ(tried.size(), 16U);
 }
 
 TEST(FramePlan, TheRatioNeverMovesTheLattice) {
@@ -252,8 +274,8 @@ TEST(FramePlan, TakesTheFastestMeasuredRatio) {
     EXPECT_EQ(p.planes, 28);
     EXPECT_EQ(p.layersPerPlane, 16);
     EXPECT_EQ(p.variant.unroll, 16);
-    const Reason* reason = reasonFor(p, "ratio 28x16 unrolled");
-    ASSERT_NE(reason, nullptr);
+    const std::optional<ReasonText> reason = reasonFor(p, "ratio 28x16 unrolled");
+    ASSERT_NE(reason, std::nullopt);
     for (const char* listed : {"444x1 unrolled 9 ms", "28x16 unrolled 3 ms", "1x444 loop 5 ms"}) {
         EXPECT_NE(reason->why.find(listed), std::string::npos) << listed;
     }
@@ -366,7 +388,7 @@ TEST(FramePlan, MarksAreAsFarApartAsTheyCostAndNoRayIsOpaqueBefore) {
     facts.maxExtinctionPerMm = std::log(256.0) / 440.0; // all of the 28 planes
     const FramePlan none = planned(settings, facts);
     EXPECT_EQ(none.planesPerMark, 0);
-    EXPECT_NE(reasonFor(none, "no marks"), nullptr);
+    EXPECT_NE(reasonFor(none, "no marks"), std::nullopt);
     EXPECT_EQ(none.terminationAlpha < 1.0, none.variant.terminates);
 }
 
@@ -428,8 +450,8 @@ TEST(FramePlan, PreIntegrationTellsWhatItsColoursAreOffBy) {
     facts.maxExtinctionPerMm = 1e-3;
     facts.visibleColorRange = 0.5;
     const FramePlan faint = planned(settings, facts);
-    const Reason* reason = reasonFor(faint, "classification preintegrated");
-    ASSERT_NE(reason, nullptr);
+    const std::optional<ReasonText> reason = reasonFor(faint, "classification preintegrated");
+    ASSERT_NE(reason, std::nullopt);
     EXPECT_NE(reason->why.find("at most 0.000125"), std::string::npos) << reason->why;
     Settings shaded = settings;
     shaded.shaded = true;
@@ -442,25 +464,26 @@ TEST(FramePlan, WarnsWhereEightBitsLeaveLittleOfAnything) {
     // A plane of 16 mm adds 1 - exp(-16 s) of the densest: 4/510 from s = -ln(1 - 4/510)/16 on.
     const double limit = -std::log(1.0 - 4.0 / 510.0) / 16.0;
     SceneFacts facts = boneFacts();
-    EXPECT_EQ(reasonFor(planned({}, facts), "warning"), nullptr);
+    EXPECT_EQ(reasonFor(planned({}, facts), "warning"), std::nullopt);
     facts.maxExtinctionPerMm = 1.01 * limit;
-    EXPECT_EQ(reasonFor(planned({}, facts), "warning"), nullptr);
+    EXPECT_EQ(reasonFor(planned({}, facts), "warning"), std::nullopt);
     facts.maxExtinctionPerMm = 0.99 * limit;
-    EXPECT_NE(reasonFor(planned({}, facts), "warning"), nullptr);
+    EXPECT_NE(reasonFor(planned({}, facts), "warning"), std::nullopt);
     facts.maxExtinctionPerMm = 0.5 * limit; // half a step of 1/255 in 2.004 half steps
     const FramePlan faint = planned({}, facts);
-    const Reason* warning = reasonFor(faint, "warning");
-    ASSERT_NE(warning, nullptr);
+    const std::optional<ReasonText> warning = reasonFor(faint, "warning");
+    ASSERT_NE(warning, std::nullopt);
     EXPECT_NE(warning->why.find("up to 49.9 %"), std::string::npos) << warning->why;
-    EXPECT_EQ(reasonFor(planned({.target = TargetFormat::Rgba16f}, facts), "warning"), nullptr);
+    EXPECT_EQ(reasonFor(planned({.target = TargetFormat::Rgba16f}, facts), "warning"),
+              std::nullopt);
     EXPECT_EQ(reasonFor(planned({.layersPerPlane = 64}, facts), "warning"),
-              nullptr); // fewer planes keep it
+              std::nullopt); // fewer planes keep it
     facts.maxExtinctionPerMm = 0.24 * limit;
     const FramePlan lost = planned({}, facts);
-    ASSERT_NE(reasonFor(lost, "warning"), nullptr);
+    ASSERT_NE(reasonFor(lost, "warning"), std::nullopt);
     EXPECT_NE(reasonFor(lost, "warning")->why.find("all of it"), std::string::npos);
     facts.anythingVisible = false;
-    EXPECT_EQ(reasonFor(planned({}, facts), "warning"), nullptr);
+    EXPECT_EQ(reasonFor(planned({}, facts), "warning"), std::nullopt);
 }
 
 TEST(FramePlan, WarnsWhereHalfsLoseMuchOfWhatManyPlanesGather) {
@@ -470,22 +493,23 @@ TEST(FramePlan, WarnsWhereHalfsLoseMuchOfWhatManyPlanesGather) {
     const auto slicing = [&](int planes, TargetFormat target) {
         return planned({.totalLayers = planes, .layersPerPlane = 1, .target = target}, facts);
     };
-    EXPECT_EQ(reasonFor(slicing(511, TargetFormat::Rgba16f), "warning"), nullptr);
+    EXPECT_EQ(reasonFor(slicing(511, TargetFormat::Rgba16f), "warning"), std::nullopt);
     const FramePlan lossy = slicing(768, TargetFormat::Rgba16f);
-    ASSERT_NE(reasonFor(lossy, "warning"), nullptr);
+    ASSERT_NE(reasonFor(lossy, "warning"), std::nullopt);
     EXPECT_NE(reasonFor(lossy, "warning")->why.find("lose 75 %"), std::string::npos)
         << reasonFor(lossy, "warning")->why;
     // Denser planes hide what lies behind them, its rounding with it.
     facts.maxExtinctionPerMm = 1.0;
-    EXPECT_EQ(reasonFor(slicing(768, TargetFormat::Rgba16f), "warning"), nullptr);
+    EXPECT_EQ(reasonFor(slicing(768, TargetFormat::Rgba16f), "warning"), std::nullopt);
     facts.anythingVisible = false;
-    EXPECT_EQ(reasonFor(slicing(768, TargetFormat::Rgba16f), "warning"), nullptr);
+    EXPECT_EQ(reasonFor(slicing(768, TargetFormat::Rgba16f), "warning"), std::nullopt);
 }
 
 TEST(FramePlan, WarnsWhereAPreintegratedTableLosesTheFaintest) {
     SceneFacts facts = boneFacts();
     const auto warned = [&](Classification classification) {
-        return reasonFor(planned({.classification = classification}, facts), "warning") != nullptr;
+        return reasonFor(planned({.classification = classification}, facts), "warning") !=
+               std::nullopt;
     };
     EXPECT_FALSE(warned(Classification::Preintegrated));
     facts.wideTable = true;

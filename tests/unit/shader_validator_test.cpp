@@ -8,8 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "core/base/parallel.h"
+#include "core/gl/shader_text.h"
 #include "core/plan/shader_variant.h"
 #include "core/skip/gpu/gpu_passes.h"
+#include "tests/support/variant_walk.h"
 
 namespace slabcast {
 namespace {
@@ -94,8 +96,8 @@ protected:
 };
 
 /// Nearly all of a run is the tool's own start: it is given many texts at once.
-TEST_F(ShaderValidator, TakesEveryValidVariant) {
-    const std::vector<ShaderVariant> variants = allVariants();
+TEST_F(ShaderValidator, TakesWhatPlansReachAndEveryPairOfAxisValues) {
+    const std::vector<ShaderVariant>& variants = test::walkedVariants();
     ASSERT_FALSE(variants.empty());
     std::mutex oneAtATime;
     parallelFor(static_cast<std::int64_t>(variants.size()), 100,
@@ -117,13 +119,31 @@ TEST_F(ShaderValidator, TakesEveryValidVariant) {
                 });
 }
 
+/// Those that only measuring takes: post-classification and pre-classification, lit or not.
+TEST_F(ShaderValidator, TakesWhatMeasuringRounds) {
+    std::map<std::string, std::string> texts;
+    for (const ShaderVariant& v : test::walkedVariants()) {
+        if (v.unroll == 0 && !v.counts && v.skip == SkipForm::None) {
+            texts["half" + std::to_string(texts.size()) + ".frag"] =
+                withoutFetch(shaderText(v, {.halfGroups = kHalfAll}).value().fragment);
+        }
+    }
+    ASSERT_GE(texts.size(), 10U);
+    EXPECT_EQ(complaints(folder_, "half", "", texts).find("ERROR"), std::string::npos);
+}
+
 /// What the stages hand each other depends on none of the rest.
 TEST_F(ShaderValidator, LinksEveryWayOfSkippingAndWriting) {
-    for (const ShaderVariant& v : allVariants()) {
-        if (v.unroll == 1 && v.terminates && !v.shaded && !v.exactField &&
-            v.classification == Classification::Post) {
-            const Result<ShaderPair> pair = shaderText(v);
-            EXPECT_EQ(complaints(folder_, "linked", *pair), "") << name(v);
+    for (std::size_t skip = 0; skip < std::size(axes::kSkip); ++skip) {
+        for (const bool fetches : {false, true}) {
+            for (const bool counts : {false, true}) {
+                const ShaderVariant v{.skip = static_cast<SkipForm>(skip),
+                                      .terminates = true,
+                                      .fetchesTarget = fetches,
+                                      .unroll = 1,
+                                      .counts = counts};
+                EXPECT_EQ(complaints(folder_, "linked", shaderText(v).value()), "") << name(v);
+            }
         }
     }
 }

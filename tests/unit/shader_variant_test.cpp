@@ -1,11 +1,16 @@
 #include "core/plan/shader_variant.h"
 
+#include <algorithm>
+#include <cctype>
 #include <functional>
 #include <regex>
 #include <set>
 #include <sstream>
 
 #include <gtest/gtest.h>
+
+#include "core/gl/shader_text.h"
+#include "tests/support/variant_walk.h"
 
 namespace slabcast {
 namespace {
@@ -35,21 +40,83 @@ std::size_t count(const std::string& text, const std::string& what) {
     return found;
 }
 
-TEST(ShaderVariant, ValidOnesAreAsManyAsTheTableSays) {
-    // 11 forms (10 lengths and the loop), 6 of skipping, 3 of termination (none, within segments,
-    // across planes), counts; post also has shaded and exactField, pre-integrated exactField.
-    // Rounded to fp16: the loop that draws.
-    const std::size_t looks = 4 + 1 + 2;
-    const std::size_t expected = 11 * (6 * 3 * 2) * looks + (6 * 3) * looks;
-    const std::vector<ShaderVariant> variants = allVariants();
-    EXPECT_EQ(variants.size(), expected);
-    EXPECT_EQ(std::set<ShaderVariant>(variants.begin(), variants.end()).size(), expected);
-    std::set<std::string> names;
-    for (const ShaderVariant& v : variants) {
-        EXPECT_TRUE(v.valid()) << name(v);
-        names.insert(name(v));
+/// Every value of every axis with every other, valid or not.
+std::vector<ShaderVariant> product() {
+    std::vector<ShaderVariant> variants(1);
+    for (const AxisInfo& axis : kAxes) {
+        std::vector<ShaderVariant> next;
+        for (const ShaderVariant& variant : variants) {
+            for (std::size_t value = 0; value < axis.count; ++value) {
+                axis.choose(next.emplace_back(variant), value);
+            }
+        }
+        variants = std::move(next);
     }
-    EXPECT_EQ(names.size(), expected);
+    return variants;
+}
+
+TEST(ShaderVariant, ValidOnesAreAsManyAsTheRequirementsLeave) {
+    // 11 forms (10 lengths and the loop), 6 of skipping, 3 of termination (none, within segments,
+    // across planes), counting, two lattices, jitter; post also has shaded and exactField,
+    // pre-integrated exactField.
+    const std::size_t looks = 4 + 1 + 2;
+    const std::size_t named = 11 * (6 * 3 * 2) * looks;
+    std::set<ShaderVariant> variants;
+    std::set<std::string> names;
+    for (const ShaderVariant& v : product()) {
+        if (v.valid()) {
+            variants.insert(v);
+            names.insert(name(v));
+        }
+    }
+    EXPECT_EQ(variants.size(), named * 4);
+    EXPECT_EQ(names.size(), named); // lattice and jitter are stated beside the name
+}
+
+TEST(ShaderVariant, EveryAxisReadsBackWhatWasChosen) {
+    for (const AxisInfo& axis : kAxes) {
+        for (std::size_t value = 0; value < axis.count; ++value) {
+            ShaderVariant v;
+            axis.choose(v, value);
+            EXPECT_EQ(axis.valueOf(v), value) << axis.name;
+        }
+        EXPECT_EQ(axis.valueOf(ShaderVariant{}), 0U) << axis.name; // the first is the default
+    }
+    for (std::size_t k = 0; k < kUnrollLengths.size(); ++k) {
+        EXPECT_EQ(axes::kForm[k + 1].layersWrittenOut, kUnrollLengths[k]);
+    }
+    for (std::size_t k = 0; k < std::size(axes::kSkip); ++k) {
+        const auto form = static_cast<SkipForm>(k);
+        EXPECT_EQ(axes::kSkip[k].suffix,
+                  form == SkipForm::None ? "" : std::string("+") + name(form));
+    }
+}
+
+TEST(ShaderVariant, TheWalkHoldsWhatPlansReachAndEveryPairOfValues) {
+    const std::vector<ShaderVariant>& walked = test::walkedVariants();
+    std::set<test::AxisPair> pairs;
+    for (const ShaderVariant& v : walked) {
+        EXPECT_TRUE(v.valid()) << name(v);
+        for (const test::AxisPair& pair : test::pairsOf(v)) {
+            pairs.insert(pair);
+        }
+    }
+    std::set<test::AxisPair> expected; // by the product, of which the walk knows nothing
+    for (const ShaderVariant& v : product()) {
+        if (v.valid()) {
+            for (const test::AxisPair& pair : test::pairsOf(v)) {
+                expected.insert(pair);
+            }
+        }
+    }
+    EXPECT_EQ(pairs, expected);
+    const std::set<ShaderVariant> all(walked.begin(), walked.end());
+    const std::set<ShaderVariant> reached = test::reachableVariants(1);
+    EXPECT_TRUE(std::includes(all.begin(), all.end(), reached.begin(), reached.end()));
+    RecordProperty("walked", static_cast<int>(walked.size()));
+    RecordProperty("reached", static_cast<int>(reached.size()));
+    RecordProperty("pairs", static_cast<int>(pairs.size()));
+    EXPECT_LT(walked.size(), 2000U); // or walking takes longer than it says more
 }
 
 TEST(ShaderVariant, ValidityKnowsLengthsAndBakedTexels) {
@@ -105,7 +172,9 @@ TEST(ShaderVariant, WhatIsOffIsAbsentFromTheText) {
         {"gradientRow[0].", [](const V& v) { return v.shaded; }},
         {"material.z * pow(", [](const V& v) { return v.shaded; }},
         {"pow(", [](const V& v) { return v.shaded; }},
-        {"halved", [](const V& v) { return v.halfGroups != 0; }},
+        {"halved", never},
+        {"dot(missed", [](const V& v) { return v.lattice == LatticeKind::Shells; }},
+        {"jitterOf(", [](const V& v) { return v.jittered; }},
         {"viewport.w", [](const V& v) { return v.terminates; }},
         {"out highp vec4 colour;", [](const V& v) { return !v.counts; }},
         {"out highp vec4 work1;", [](const V& v) { return v.counts; }},
@@ -117,7 +186,7 @@ TEST(ShaderVariant, WhatIsOffIsAbsentFromTheText) {
         {"discard", never},
         {"#include", never},
     };
-    for (const V& v : allVariants()) {
+    for (const V& v : test::walkedVariants()) {
         const std::string text = withoutComments(shaderText(v).value().fragment);
         for (const auto& rule : rules) {
             EXPECT_EQ(count(text, rule.token) > 0, rule.present(v))
@@ -126,6 +195,74 @@ TEST(ShaderVariant, WhatIsOffIsAbsentFromTheText) {
         const std::size_t loops =
             count(text, "while (") + count(text, "for (") + count(text, "do {");
         EXPECT_EQ(loops > 0, v.unroll == 0) << name(v);
+    }
+}
+
+/// Whether a word of its own stands there.
+bool holdsWord(const std::string& text, const std::string& word) {
+    const auto isWord = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+    };
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+        const std::size_t end = at + word.size();
+        const bool begins = at == 0 || (!isWord(text[at - 1]) && text[at - 1] != '.');
+        if (begins && (end == text.size() || !isWord(text[end]))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// The fragment's text but for the frame block, and the macros that name members of it.
+std::string withoutFrameBlock(std::string text) {
+    const std::size_t at = text.find("layout(std140) uniform FrameBlock");
+    const std::size_t end = text.find("#define planesPerOutline", at);
+    EXPECT_NE(end, std::string::npos);
+    text.erase(at, text.find('\n', end) - at);
+    const std::size_t list = text.find("#define FRAME_FIELDS");
+    return text.erase(list, text.find('\n', list) - list);
+}
+
+// The table says which resources a value takes: it must neither keep one back nor invent one.
+TEST(ShaderVariant, TextsReadWhatTheTableSays) {
+    std::set<std::string> fields;
+    for (const AxisInfo& axis : kAxes) {
+        for (std::size_t value = 0; value < axis.count; ++value) {
+            fields.insert(axis.values[value].fields.begin(), axis.values[value].fields.end());
+        }
+    }
+    EXPECT_GE(fields.size(), 14U);
+    for (const ShaderVariant& v : test::walkedVariants()) {
+        const std::string text = withoutFrameBlock(withoutComments(shaderText(v).value().fragment));
+        std::set<std::string> taken;
+        std::string extension;
+        for (const AxisInfo& axis : kAxes) {
+            const AxisValue& value = axis.values[axis.valueOf(v)];
+            taken.insert(value.fields.begin(), value.fields.end());
+            extension += value.extension != nullptr && !v.counts ? value.extension : "";
+        }
+        for (const std::string& field : fields) {
+            EXPECT_EQ(holdsWord(text, field), taken.count(field) == 1) << name(v) << ": " << field;
+        }
+        const std::vector<std::string> samplers = samplersOf(v);
+        for (const std::string sampler : kSamplerNames) {
+            const bool listed =
+                std::find(samplers.begin(), samplers.end(), sampler) != samplers.end();
+            EXPECT_EQ(holdsWord(text, sampler), listed) << name(v) << ": " << sampler;
+        }
+        EXPECT_EQ(count(text, "#extension"), extension.empty() ? 0U : 1U) << name(v);
+        EXPECT_NE(text.find(extension), std::string::npos) << name(v);
+    }
+}
+
+TEST(ShaderVariant, OnlyMeasuringRoundsToHalfs) {
+    for (const bool shaded : {false, true}) {
+        const ShaderVariant v{.shaded = shaded};
+        const std::string drawn = shaderText(v).value().fragment;
+        const std::string rounded = shaderText(v, {.halfGroups = kHalfAll}).value().fragment;
+        EXPECT_EQ(count(drawn, "HALF_GROUPS"), 0U);
+        EXPECT_EQ(count(rounded, "#define HALF_GROUPS 31"), 1U);
+        EXPECT_GT(count(rounded, "halved("), 0U);
     }
 }
 
@@ -168,7 +305,7 @@ void expectLinesOfTheirFiles(const std::string& text, const std::string& what) {
 }
 
 TEST(ShaderText, MessagesNameTheFileAndLineOfTheSource) {
-    for (const ShaderVariant& v : allVariants()) {
+    for (const ShaderVariant& v : test::walkedVariants()) {
         if (v.unroll == 0 || v.unroll == 4) {
             const ShaderPair pair = shaderText(v).value();
             expectLinesOfTheirFiles(pair.vertex, name(v));
@@ -199,11 +336,11 @@ TEST(ShaderText, AFileThatIsNotThereIsAnErrorThatNamesIt) {
     EXPECT_NE(file.error().detail.find("absent.frag"), std::string::npos);
     // Through an include whose define is missing, and through one that names nothing.
     for (const std::map<std::string, std::string>& defines :
-         {std::map<std::string, std::string>{}, {{"TARGET_FILE", "absent.glsl"}}}) {
+         {std::map<std::string, std::string>{}, {{"OUTPUT_FILE", "absent.glsl"}}}) {
         const Result<std::string> inner = expandShader("segment/segment.frag", defines);
         ASSERT_FALSE(inner);
         EXPECT_EQ(inner.error().code, ErrorCode::ShaderCompile);
-        EXPECT_NE(inner.error().detail.find(defines.empty() ? "TARGET_FILE" : "absent.glsl"),
+        EXPECT_NE(inner.error().detail.find(defines.empty() ? "OUTPUT_FILE" : "absent.glsl"),
                   std::string::npos);
     }
 }

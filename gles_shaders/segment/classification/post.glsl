@@ -1,35 +1,17 @@
-// Post-classification: the interpolated value is looked up in the TF's table.
+// Post-classification: a layer is what the material makes of the interpolated value.
 #include FIELD_FILE
 #include "segment/classification/sample_middle.glsl"
-#include SHADE_FILE
-precision highp sampler2D;
-uniform sampler2D transferTable;
-
-/// Two fetches, interpolated here: texture units may filter with 8-bit weights, and what is zero in
-/// both texels must be exactly zero between them. Colours are mediump: their rounding stays below
-/// half an 8-bit step (`slabcast stability`, half precision); a device that does round them
-/// promises that skipping changes nothing only to that rounding.
-vec4 materialOf(float value) {
-    precise float at = clamp((value - tableMap.y) * tableMap.x, 0.0, tableMap.w);
-    int texel = int(at);
-    vec4 low = texelFetch(transferTable, ivec2(texel, 0), 0);
-    vec4 high = texelFetch(transferTable, ivec2(min(texel + 1, int(tableMap.w)), 0), 0);
-    float part = at - float(texel);
-    precise float denser = inExtinction(inExtinction(high.a - low.a) * part);
-    precise float extinction = inExtinction(low.a + denser);
-    mediump vec3 rise = inColour(high.rgb - low.rgb);
-    precise mediump vec3 colour = inColour(low.rgb + inColour(rise * part));
-    return vec4(colour, extinction);
-}
+#include SHADING_FILE
+#include MATERIAL_OF_VALUE_FILE
 
 /// Premultiplied colour and opacity of layer i, whose sample lies at uvw.
 vec4 classify(vec3 uvw, Ray ray, int i) {
     float value = sampleField(uvw);
     countFetches(kFetchesPerSample);
-    vec4 material = materialOf(value);
-    float alpha = opacityOfDepth(material.a * (lengthInside(ray, i) * tableMap.z));
+    vec4 found = materialOf(value);
+    float alpha = opacityOfDepth(found.a * (lengthInside(ray, i) * tableMap.z));
     if (alpha == 0.0) {
         return vec4(0.0);
     }
-    return vec4(inColour(shade(material.rgb, uvw, ray) * alpha), alpha);
+    return vec4(inColour(shade(found.rgb, uvw, ray) * alpha), alpha);
 }

@@ -1,8 +1,7 @@
 // Pre-integrated classification: a layer is the interval between two samples, along which the field
 // is taken to run linearly. L layers take L + 1 samples. See core/transfer/preintegrated.h.
 #include FIELD_FILE
-precision highp sampler2D;
-uniform sampler2D transferTable;
+#include MATERIAL_OF_INTERVAL_FILE
 const int kSharedEnds = 1; // samples that neighbouring layers have in common
 
 int sampledEnd = -1; // of which layer's front endTexel is
@@ -27,22 +26,6 @@ void beginRun(Ray ray, int i) {
     if (sampledEnd != i) {
         endTexel = texelAt(ray, i);
     }
-}
-
-/// Mean of an interval by the table, and by its ends where the TF is constant beyond them.
-vec4 meanBetween(float front, float back) {
-    float last = tableMap.w;
-    vec2 place = clamp(vec2(front, back), 0.0, last);
-    vec4 within = textureLod(transferTable, (place + 0.5) / (last + 1.0), 0.0);
-    float low = min(front, back);
-    float high = max(front, back);
-    float below = max(min(high, 0.0) - low, 0.0);
-    float above = max(high - max(low, last), 0.0);
-    precise vec4 mean = (within * abs(place.y - place.x) + tableEnds[0] * below +
-                         tableEnds[1] * above) / (high - low);
-    // Beyond an end exactly that end's texel: the filter's weights could let its neighbour in.
-    vec4 same = low >= last ? tableEnds[1] : high <= 0.0 ? tableEnds[0] : within;
-    return low < high ? mean : same;
 }
 
 vec4 classify(vec3 uvw, Ray ray, int i) {

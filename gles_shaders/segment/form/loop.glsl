@@ -2,7 +2,7 @@
 // sampling are loops of their own, so that neighbouring fragments leap together and then sample
 // together.
 vec4 march(Ray ray, ivec2 range) {
-    vec4 sum = vec4(0.0);
+    vec4 sum = started();
     int i = range.x;
     while (i < range.y) {
         Stretch stretch = stretchAt(samplePosition(ray, i), ray);
@@ -15,13 +15,13 @@ vec4 march(Ray ray, ivec2 range) {
         }
         int stop = min(i + stretch.layers, range.y);
         beginRun(ray, i);
-        for (; i < stop && !terminated(sum.a); ++i) {
+        for (; i < stop && !done(sum); ++i) {
             countLayer();
-            sum = composited(sum, classify(samplePosition(ray, i), ray, i));
+            sum = added(sum, classify(samplePosition(ray, i), ray, i));
         }
-        if (terminated(sum.a)) {
+        if (done(sum)) {
             break;
         }
     }
-    return closed(sum, i < range.y);
+    return resultOf(sum, i < range.y);
 }

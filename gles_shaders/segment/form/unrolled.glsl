@@ -11,7 +11,7 @@ void compositeLayer(Ray ray, int i, int end, inout Walk walk) {
     if (i >= end) {
         return;
     }
-    if (terminated(walk.sum.a)) {
+    if (done(walk.sum)) {
         walk.left = true;
         return;
     }
@@ -24,13 +24,13 @@ void compositeLayer(Ray ray, int i, int end, inout Walk walk) {
     if (!walk.free) {
         countLayer();
         beginRun(ray, i);
-        walk.sum = composited(walk.sum, classify(uvw, ray, i));
+        walk.sum = added(walk.sum, classify(uvw, ray, i));
     }
 }
 
 vec4 march(Ray ray, ivec2 range) {
-    Walk walk = Walk(range.x, false, false, vec4(0.0));
+    Walk walk = Walk(range.x, false, false, started());
 #define COMPOSITE_LAYER(k) compositeLayer(ray, range.x + k, range.y, walk);
     REPEAT_LAYERS(COMPOSITE_LAYER)
-    return closed(walk.sum, walk.left);
+    return resultOf(walk.sum, walk.left);
 }

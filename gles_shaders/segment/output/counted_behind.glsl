@@ -1,4 +1,4 @@
-// Counts what target_fetched.glsl does: the layer is drawn beside, plane by plane.
+// Counts what fetched.glsl does: the layer is drawn beside, plane by plane.
 #include "segment/output/counted.glsl"
 uniform highp sampler2D layerBefore;
 

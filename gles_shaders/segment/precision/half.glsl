@@ -1,5 +1,5 @@
 // What mediump may do and no desktop driver shows: every result of the named operations is rounded
-// to fp16, to nearest. For measuring where mediump is safe. HALF_GROUPS: bits of core/frame/
+// to fp16, to nearest. For measuring where mediump is safe. HALF_GROUPS: bits of core/plan/
 // shader_variant.h.
 float halved(float x) {
     uint bits = floatBitsToUint(x);

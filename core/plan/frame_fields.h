@@ -1,0 +1,57 @@
+#pragma once
+
+/// What all stages of a view share, in the order of memory: the members of FrameBlock and of the
+/// shaders' uniform block come from this list, FIELD(type, name, number). std140: vectors of four
+/// alone, so that an element takes 16 bytes on either side. Tested by: frame_block_gl_test.cpp
+// clang-format off
+#define SLABCAST_FRAME_FIELDS(FIELD)                                                               \
+    /* xyz: uvw where the central ray crosses the sphere's depth; w: total / 2 */                  \
+    FIELD(vec4, centre0, 1)                                                                        \
+    /* per pixel to the right; w: offset of the near plane (planar lattice) */                     \
+    FIELD(vec4, centreX, 1)                                                                        \
+    /* per pixel up; w: near depth (shells) */                                                     \
+    FIELD(vec4, centreY, 1)                                                                        \
+    /* xyz: uvw per unit of depth; w: spacing of the layers, view units */                         \
+    FIELD(vec4, direction0, 1)                                                                     \
+    /* per pixel to the right; w: 1 / spacing */                                                   \
+    FIELD(vec4, directionX, 1)                                                                     \
+    /* per pixel up; w: mm per view unit */                                                        \
+    FIELD(vec4, directionY, 1)                                                                     \
+    /* xy: of the central ray; zw: per pixel */                                                    \
+    FIELD(vec4, tangent, 1)                                                                        \
+    /* xyz: the sphere's centre (x, y, depth); w: its distance */                                  \
+    FIELD(vec4, sphere, 1)                                                                         \
+    /* at the sphere's depth, xy: from its centre to the central ray; zw: per pixel */             \
+    FIELD(vec4, miss, 1)                                                                           \
+    /* xy: centre in pixels; w: termination */                                                     \
+    FIELD(vec4, viewport, 1)                                                                       \
+    /* xy: table texel = (sampled - y) * x; w: last texel; z: per mm, extinction where a table     \
+       texel's alpha is 1, or 1 / reference length of pre-classified texels */                     \
+    FIELD(vec4, tableMap, 1)                                                                       \
+    /* of a pre-integrated table: its first and last texel */                                      \
+    FIELD(vec4, tableEnds, 2)                                                                      \
+    /* xyz: blocks or leaves per unit of uvw; w: free length per count, mm */                      \
+    FIELD(vec4, skipMap, 1)                                                                        \
+    /* xy: sampled value of an exact texel = dot(texel.rg, xy) */                                  \
+    FIELD(vec4, decode, 1)                                                                         \
+    /* rows: patient-space gradient from differences per voxel; w of 0: floor */                   \
+    FIELD(vec4, gradientRow, 3)                                                                    \
+    /* rows: patient-space direction from one in uvw */                                            \
+    FIELD(vec4, patientRow, 3)                                                                     \
+    /* ambient, diffuse, specular, shininess */                                                    \
+    FIELD(vec4, material, 1)                                                                       \
+    /* first plane, layers per plane, planes per outline */                                        \
+    FIELD(ivec4, counts, 1)                                                                        \
+    /* xyz: number of blocks or leaves - 1; w: levels that a walk through an octree goes up after  \
+       a free node */                                                                              \
+    FIELD(ivec4, skipBlocks, 1)                                                                    \
+    /* level of the initial nodes, from the leaves; nodes per texel, log2; fold, see               \
+       segment/skip/levels.glsl; bits per node */                                                  \
+    FIELD(ivec4, octree, 1)                                                                        \
+    /* what of a node's bits or codes the transfer function makes visible */                       \
+    FIELD(uvec4, nodeTest, 1)                                                                      \
+    /* xy: the viewport's corner in pixels */                                                      \
+    FIELD(ivec4, jitter, 1)                                                                        \
+    /* x: number of the level's first texel in the texture */                                      \
+    FIELD(ivec4, octreeLevels, 16)
+// clang-format on

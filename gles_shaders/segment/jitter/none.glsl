@@ -1,0 +1,1 @@
+void jitterRay(vec2 fragCoord, inout Ray ray) {}
