@@ -2,51 +2,11 @@
 
 #include <cstdio>
 
+#include "core/plan/settings_table.h"
+
 namespace slabcast {
 
 namespace {
-
-Result<void> checkRange(const char* what, double value, double low, double high) {
-    if (value >= low && value <= high) {
-        return {};
-    }
-    return fail(ErrorCode::InvalidArgument, std::string(what) + " is " + shortNumber(value) +
-                                                ": give a number from " + shortNumber(low) +
-                                                " to " + shortNumber(high));
-}
-
-Result<void> checkAlone(const Settings& s) {
-    const struct {
-        const char* what;
-        std::optional<double> value;
-        double low, high;
-    } ranges[] = {
-        {"layer spacing (voxels)", s.layerSpacingVoxels, 1e-3, 1e6},
-        {"total layers", s.totalLayers, 1, kMaxTotalLayers},
-        {"planes", s.planes, 1, kMaxTotalLayers},
-        {"layers per plane", s.layersPerPlane, 1, kMaxTotalLayers},
-        {"termination opacity", s.termination, 0.0, 1.0},
-    };
-    for (const auto& range : ranges) {
-        if (range.value) {
-            if (Result<void> ok = checkRange(range.what, *range.value, range.low, range.high);
-                !ok) {
-                return ok;
-            }
-        }
-    }
-    if (s.planes && s.layersPerPlane) {
-        return fail(ErrorCode::InvalidArgument,
-                    "planes and layers per plane are both set: give one, the total "
-                    "number of layers decides the other");
-    }
-    if (s.shaded && s.classification == Classification::Preintegrated) {
-        return fail(ErrorCode::InvalidArgument,
-                    "pre-integrated classification has no shading: leave shading off, or take "
-                    "post-classification");
-    }
-    return {};
-}
 
 /// A plan skips by what was built, or not at all.
 Result<void> checkSkip(const SceneFacts& facts, const Settings& settings) {
@@ -68,8 +28,31 @@ std::string shortNumber(double value) {
     return text;
 }
 
+Result<void> check(const Settings& s) {
+    for (const Setting& setting : settingsTable()) {
+        // Parameters of structures are checked with the structure: others have no use for them.
+        const bool parameter = setting.usedBy != nullptr;
+        if (const SettingValue value = setting.read(s); !parameter && !setting.takes(value)) {
+            return fail(ErrorCode::InvalidArgument, std::string(setting.name) + " is " +
+                                                        setting.text(value) + ": give " +
+                                                        setting.allowed());
+        }
+    }
+    if (s.planes && s.layersPerPlane) {
+        return fail(ErrorCode::InvalidArgument,
+                    "planes and layers per plane are both set: give one, the total "
+                    "number of layers decides the other");
+    }
+    if (s.shaded && s.classification == Classification::Preintegrated) {
+        return fail(ErrorCode::InvalidArgument,
+                    "pre-integrated classification has no shading: leave shading off, or take "
+                    "post-classification");
+    }
+    return {};
+}
+
 Result<void> check(const Settings& settings, const SceneFacts& facts) {
-    if (Result<void> ok = checkAlone(settings); !ok) {
+    if (Result<void> ok = check(settings); !ok) {
         return ok;
     }
     return checkSkip(facts, settings);

@@ -10,8 +10,12 @@ namespace slabcast {
 /// Three significant digits, as reasons and refusals say it.
 std::string shortNumber(double value);
 
-/// Fails: InvalidArgument (a number outside its range, settings that exclude each other, a skip
-/// structure other than what was built), with what to do instead.
+/// What is wrong with settings by themselves. Fails: InvalidArgument (a number outside its range of
+/// the table, settings that exclude each other), with what to do instead.
+Result<void> check(const Settings& settings);
+
+/// And for a scene. Fails: as check(), InvalidArgument (a skip structure other than what was
+/// built).
 Result<void> check(const Settings& settings, const SceneFacts& facts);
 
 } // namespace slabcast

@@ -534,15 +534,15 @@ TEST(FramePlan, DrawsNothingWhereNothingIsVisible) {
 TEST(FramePlan, RefusesWhatIsOutOfRange) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     const std::pair<Settings, const char*> cases[] = {
-        {{.layerSpacingVoxels = 0.0}, "layer spacing"},
-        {{.layerSpacingVoxels = -1.0}, "layer spacing"},
-        {{.layerSpacingVoxels = kNan}, "layer spacing"},
-        {{.layerSpacingVoxels = 2e6}, "layer spacing"},
-        {{.totalLayers = 0}, "total layers"},
-        {{.totalLayers = (1 << 20) + 1}, "total layers"},
+        {{.layerSpacingVoxels = 0.0}, "layer-spacing"},
+        {{.layerSpacingVoxels = -1.0}, "layer-spacing"},
+        {{.layerSpacingVoxels = kNan}, "layer-spacing"},
+        {{.layerSpacingVoxels = 2e6}, "layer-spacing"},
+        {{.totalLayers = 0}, "layers"},
+        {{.totalLayers = (1 << 20) + 1}, "layers"},
         {{.planes = 0}, "planes"},
         {{.planes = -3}, "planes"},
-        {{.layersPerPlane = 0}, "layers per plane"},
+        {{.layersPerPlane = 0}, "layers-per-plane"},
         {{.planes = 2, .layersPerPlane = 2}, "both"},
         {{.termination = 1.5}, "termination"},
         {{.termination = -0.1}, "termination"},
