@@ -6,11 +6,11 @@ if(NOT commit)
     set(commit "unknown")
 endif()
 file(CONFIGURE OUTPUT ${OUT} CONTENT [[
-#include "platform/cli/draw.h"
+#include "platform/cli/commit.h"
 
 namespace slabcast {
 
-std::string commit() { return "@commit@"; }
+const char* commit() { return "@commit@"; }
 
 } // namespace slabcast
 ]] @ONLY)

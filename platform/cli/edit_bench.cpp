@@ -5,6 +5,7 @@
 #include "core/base/stopwatch.h"
 #include "core/draw/warm_up.h"
 #include "core/gl/api.h"
+#include "perf/frame_times.h"
 #include "platform/cli/progress.h"
 
 namespace slabcast {
@@ -28,8 +29,8 @@ Settings plain(Settings settings) {
 Result<EditBench> EditBench::open(const Stage& stage, const EditOptions& options,
                                   const LiveOptions& live, const TransferFunction& start,
                                   const FramePlan& decided) {
-    Result<Renderer> policys = Renderer::create(stage.session().caps);
-    Result<Renderer> others = Renderer::create(stage.session().caps);
+    Result<Renderer> policys = Renderer::create(stage.caps());
+    Result<Renderer> others = Renderer::create(stage.caps());
     if (!policys || !others) {
         return tl::unexpected(policys ? others.error() : policys.error());
     }
@@ -68,7 +69,7 @@ Result<void> EditBench::warmUp(const FramePlan& decided) {
     Result<void> done = target_.resize(options_.size.x, options_.size.y, {format});
     for (Renderer* renderer : {&policysRenderer_, &othersRenderer_}) {
         done = done.and_then([&] {
-            return warmUpForEditing(*renderer, live_, settings_, stage_->session().caps, {},
+            return warmUpForEditing(*renderer, live_, settings_, stage_->caps(), {},
                                     stage_->views(0.0));
         });
     }
@@ -76,7 +77,7 @@ Result<void> EditBench::warmUp(const FramePlan& decided) {
 }
 
 Result<FramePlan> EditBench::planOf(const Scene& scene, const Settings& settings) const {
-    return plan(scene.facts(), settings, stage_->session().caps, {});
+    return plan(scene.facts(), settings, stage_->caps(), {});
 }
 
 Result<void> EditBench::draw(Renderer& renderer, const Scene& scene, const FramePlan& plan,

@@ -4,8 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "platform/cli/draw.h"
+#include "perf/report_json.h"
+#include "perf/stage.h"
 #include "platform/cli/edit_script.h"
+#include "platform/cli/options.h"
 
 namespace slabcast {
 

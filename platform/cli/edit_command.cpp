@@ -3,8 +3,12 @@
 
 #include <fmt/core.h>
 
+#include "perf/csv.h"
+#include "perf/report_folder.h"
+#include "perf/report_json.h"
 #include "platform/cli/commands.h"
 #include "platform/cli/edit_summary.h"
+#include "platform/cli/open_stage.h"
 #include "platform/cli/progress.h"
 #include "platform/cli/report_files.h"
 #include "platform/cli/skip_options.h"
@@ -160,13 +164,14 @@ Result<void> verdict(const std::vector<EditRow>& rows, const std::string& folder
 Result<void> editCommand(const EditOptions& options, const std::string& command) {
     LiveOptions live = liveOptions(options);
     live.quietFrames = options.quietFrames;
-    SceneOptions opened = options;
-    opened.settings.skip = SkipStructure::None; // the bench's scenes have what they need
-    opened.settings.tighten = false;
-    Result<Stage> stage = Stage::open(opened);
-    if (!stage) {
-        return tl::unexpected(stage.error());
+    SceneOptions scene = options;
+    scene.settings.skip = SkipStructure::None; // the bench's scenes have what they need
+    scene.settings.tighten = false;
+    Result<OpenStage> opened = openStage(scene);
+    if (!opened) {
+        return tl::unexpected(opened.error());
     }
+    Stage* const stage = &opened->stage;
     const Result<EditScript> script = scriptOf(options, *stage);
     if (!script) {
         return tl::unexpected(script.error());
@@ -175,7 +180,7 @@ Result<void> editCommand(const EditOptions& options, const std::string& command)
     if (!decided) {
         return tl::unexpected(decided.error());
     }
-    json report = reportHeader(*stage, command);
+    json report = reportHeader(runOf(command), *stage);
     report["conditions"] = conditionsOf(*decided, options, *script);
     std::vector<std::vector<EditRow>> replays;
     for (int replay = 0; replay < options.replays; ++replay) {

@@ -1,4 +1,6 @@
 #include "platform/cli/edit_summary.h"
+#include "perf/frame_times.h"
+#include "perf/report_json.h"
 
 #include <algorithm>
 #include <map>

@@ -4,10 +4,15 @@
 
 #include <fmt/core.h>
 
+#include "perf/csv.h"
+#include "perf/report_folder.h"
+#include "perf/report_json.h"
 #include "platform/cli/commands.h"
+#include "platform/cli/commit.h"
 #include "platform/cli/error_grid.h"
 #include "platform/cli/error_rows.h"
 #include "platform/cli/error_table_file.h"
+#include "platform/cli/open_stage.h"
 #include "platform/cli/picture_file.h"
 #include "platform/cli/reference_pictures.h"
 #include "platform/cli/report_files.h"
@@ -72,7 +77,7 @@ json referenceKey(const Stage& stage, const ErrorOptions& o) {
 json rowsKey(const Stage& stage, const ErrorOptions& o) {
     const Settings& s = o.settings;
     json key = referenceKey(stage, o);
-    key.update({{"device", toJson(stage.session().caps)},
+    key.update({{"device", toJson(stage.caps())},
                 {"texels", name(stage.scene().texels().format)},
                 {"lattice", name(s.lattice)},
                 {"form", wordFor(formWords(), s.form)},
@@ -167,12 +172,11 @@ void refreshTable(const Stage& stage, const ErrorOptions& o, const std::vector<S
             }
         }
     }
-    const Result<void> done =
-        errorTablePath(stage.session().caps).and_then([&fresh](const fs::path& path) {
-            return readErrorTable(path).and_then([&](std::vector<MeasuredError> table) {
-                return writeErrorTable(path, refreshed(std::move(table), fresh));
-            });
+    const Result<void> done = errorTablePath(stage.caps()).and_then([&fresh](const fs::path& path) {
+        return readErrorTable(path).and_then([&](std::vector<MeasuredError> table) {
+            return writeErrorTable(path, refreshed(std::move(table), fresh));
         });
+    });
     if (!done) {
         fmt::print(stderr, "slabcast: {}\n", done.error().detail);
     }
@@ -186,10 +190,11 @@ Result<void> errorCommand(const ErrorOptions& given, const std::string& command)
     options.background.reset();
     options.input.keepValues = true;
     options.axes = completed(options.axes, options.quick);
-    Result<Stage> stage = Stage::open(options);
-    if (!stage) {
-        return tl::unexpected(stage.error());
+    Result<OpenStage> opened = openStage(options);
+    if (!opened) {
+        return tl::unexpected(opened.error());
     }
+    Stage* const stage = &opened->stage;
     const fs::path folder = options.outputFolder;
     if (Result<void> made = makeReportFolder(folder / "pictures"); !made) {
         return made;
@@ -215,7 +220,7 @@ Result<void> errorCommand(const ErrorOptions& given, const std::string& command)
         !done) {
         return done;
     }
-    json report = reportHeader(*stage, command);
+    json report = reportHeader(runOf(command), *stage);
     report.update({{"started", started},
                    {"leftOut", measured.leftOut()},
                    {"conditions", conditions(*stage, options)},

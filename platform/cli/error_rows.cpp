@@ -4,6 +4,10 @@
 
 #include <fmt/core.h>
 
+#include "perf/csv.h"
+#include "perf/frame_times.h"
+#include "perf/report_folder.h"
+#include "perf/report_json.h"
 #include "platform/cli/command_line.h"
 #include "platform/cli/error_grid.h"
 #include "platform/cli/picture_file.h"
@@ -43,7 +47,7 @@ Result<json> ErrorRows::measure(const std::vector<Sampling>& grid) {
         }
         const SceneFacts facts = stage_.scene().facts();
         const Result<FramePlan> plan = slabcast::plan(
-            facts, withSampling(options_.settings, sampling, facts), stage_.session().caps, {});
+            facts, withSampling(options_.settings, sampling, facts), stage_.caps(), {});
         if (!plan) {
             return tl::unexpected(plan.error());
         }
@@ -168,7 +172,7 @@ Result<json> ErrorRows::savePictures(const std::string& id,
     const std::string thumbnailFile = fmt::format("pictures/{}.png", id);
     const std::string differenceFile = fmt::format("pictures/{}_difference.png", id);
     const auto save = [this](const std::string& file, const std::vector<glm::vec4>& pixels) {
-        const SmallPicture small = thumbnail(options_.size, pixels);
+        const ReportPicture small = thumbnail(options_.size, pixels);
         return savePicture(std::filesystem::path(options_.outputFolder) / file, small.size,
                            small.pixels, true);
     };

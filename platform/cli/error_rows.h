@@ -6,8 +6,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "platform/cli/draw.h"
+#include "perf/frame_times.h"
+#include "perf/report_json.h"
+#include "perf/stage.h"
 #include "platform/cli/error_store.h"
+#include "platform/cli/options.h"
 #include "platform/cli/progress.h"
 
 namespace slabcast {

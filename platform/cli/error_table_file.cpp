@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "perf/report_json.h"
 #include "platform/cli/scene_key.h"
 #include "platform/cli/scene_options.h"
 #include "platform/io/atomic_file.h"

@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "perf/error/error_table.h"
-#include "platform/cli/draw.h"
+#include "perf/report_json.h"
+#include "perf/stage.h"
 
 namespace slabcast {
 

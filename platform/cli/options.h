@@ -9,6 +9,7 @@
 
 #include "core/draw/renderer.h"
 #include "core/plan/frame_plan.h"
+#include "perf/stage.h"
 #include "platform/cli/error_grid.h"
 #include "platform/cli/heatmap.h"
 #include "platform/cli/session.h"

@@ -3,30 +3,26 @@
 #include <cstdio>
 #include <unistd.h>
 
-#include <fmt/core.h>
-
 namespace slabcast {
 
 namespace {
 
-constexpr const char* kClearLine = "\r\033[K";
-
-} // namespace
-
-Progress::~Progress() {
-    if (shown_) {
-        fmt::print(stderr, kClearLine);
+void showLine(const std::string& line) {
+    if (isatty(STDERR_FILENO) != 0) {
+        std::fprintf(stderr, "\r\033[K%s", line.c_str());
         std::fflush(stderr);
     }
 }
 
-void Progress::show(const std::string& line) {
-    if (isatty(STDERR_FILENO) == 0) {
-        return;
-    }
-    shown_ = true;
-    fmt::print(stderr, "{}{}", kClearLine, line);
-    std::fflush(stderr);
+} // namespace
+
+void say(const std::string& line) {
+    std::fprintf(stderr, "slabcast: %s\n", line.c_str());
+}
+
+const Watcher& terminal() {
+    static const Watcher watcher{.show = showLine, .say = say};
+    return watcher;
 }
 
 } // namespace slabcast

@@ -2,22 +2,22 @@
 
 #include <string>
 
+#include "perf/watcher.h"
+
 namespace slabcast {
 
-/// One line on stderr that is written over as a long step goes on and gone when it is done; silent
-/// where stderr is no terminal.
-class Progress {
+/// "slabcast: LINE" on stderr.
+void say(const std::string& line);
+
+/// Shows steps as one line on stderr that is written over and is gone in the end, silent where
+/// stderr is no terminal; says the rest as say() does.
+const Watcher& terminal();
+
+/// A step's line at the terminal.
+class Progress : public ProgressLine {
 public:
-    Progress() = default;
-    explicit Progress(const std::string& line) { show(line); }
-    ~Progress();
-    Progress(const Progress&) = delete;
-    Progress& operator=(const Progress&) = delete;
-
-    void show(const std::string& line);
-
-private:
-    bool shown_ = false;
+    Progress() : ProgressLine(terminal()) {}
+    explicit Progress(const std::string& line) : ProgressLine(terminal(), line) {}
 };
 
 } // namespace slabcast

@@ -1,4 +1,5 @@
 #include "platform/cli/reference_pictures.h"
+#include "perf/report_json.h"
 
 #include <algorithm>
 #include <cmath>

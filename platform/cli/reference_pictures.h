@@ -7,7 +7,8 @@
 
 #include "core/reference/discrete.h"
 #include "core/reference/picture_difference.h"
-#include "platform/cli/draw.h"
+#include "perf/report_json.h"
+#include "perf/stage.h"
 
 namespace slabcast {
 

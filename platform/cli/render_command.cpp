@@ -3,9 +3,13 @@
 
 #include <fmt/core.h>
 
+#include "perf/frame_times.h"
+#include "perf/report_json.h"
+#include "perf/stage.h"
 #include "platform/cli/commands.h"
-#include "platform/cli/draw.h"
+#include "platform/cli/commit.h"
 #include "platform/cli/error_table_file.h"
+#include "platform/cli/open_stage.h"
 #include "platform/cli/picture_file.h"
 #include "platform/cli/progress.h"
 #include "platform/cli/reference_pictures.h"
@@ -37,7 +41,7 @@ Result<Settings> settingsFor(Stage& stage, const RenderOptions& options) {
     if (!options.targetError) {
         return options.settings;
     }
-    const Result<std::filesystem::path> path = errorTablePath(stage.session().caps);
+    const Result<std::filesystem::path> path = errorTablePath(stage.caps());
     const Result<std::vector<MeasuredError>> table =
         path ? readErrorTable(*path) : tl::unexpected(path.error());
     const Result<ErrorChoice> choice =
@@ -149,7 +153,7 @@ nlohmann::json skipStats(const BuiltSkip& skip, const FramePlan& plan) {
 
 nlohmann::json stats(Stage& stage, const FramePlan& plan, const std::vector<double>& times) {
     const GpuMemory gpu = stage.renderer().gpuMemory();
-    return {{"device", toJson(stage.session().caps)},
+    return {{"device", toJson(stage.caps())},
             {"commit", commit()},
             {"volume", toJson(stage.info())},
             {"plan", toJson(plan)},
@@ -192,10 +196,11 @@ Result<void> renderCommand(const RenderOptions& given) {
     if (!encoded) {
         return tl::unexpected(encoded.error());
     }
-    Result<Stage> stage = Stage::open(options);
-    if (!stage) {
-        return tl::unexpected(stage.error());
+    Result<OpenStage> opened = openStage(options);
+    if (!opened) {
+        return tl::unexpected(opened.error());
     }
+    Stage* const stage = &opened->stage;
     const Result<Settings> settings = settingsFor(*stage, options);
     if (!settings) {
         return tl::unexpected(settings.error());

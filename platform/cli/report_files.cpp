@@ -1,21 +1,21 @@
 #include "platform/cli/report_files.h"
+#include "perf/csv.h"
+#include "perf/report_folder.h"
 
-#include <algorithm>
-#include <ctime>
+#include <vector>
 
 #include <fmt/core.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "platform/cli/commit.h"
+
 namespace slabcast {
 
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
-
-constexpr int kThumbnailEdge = 192;
 
 /// Runs a program of these words and waits for it; what it prints goes to stderr. True where it
 /// ends well.
@@ -36,23 +36,6 @@ bool run(std::vector<std::string> words) {
     return started && waitpid(child, &status, 0) == child && status == 0;
 }
 
-/// Quoted where it holds what separates cells or lines.
-std::string csvCell(const json& row, const char* pointer) {
-    const json::json_pointer place(pointer);
-    const json value = row.contains(place) ? row.at(place) : json();
-    if (!value.is_string()) {
-        return value.is_null() ? "" : value.dump();
-    }
-    std::string text = value.get<std::string>();
-    if (text.find_first_of(",\"\n") == std::string::npos) {
-        return text;
-    }
-    for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2) {
-        text.insert(at, 1, '"');
-    }
-    return '"' + text + '"';
-}
-
 } // namespace
 
 Result<void> makeReportFolder(const fs::path& folder) {
@@ -66,56 +49,8 @@ Result<void> makeReportFolder(const fs::path& folder) {
     return {};
 }
 
-std::string timestamp() {
-    const std::time_t now = std::time(nullptr);
-    char text[32];
-    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
-    return text;
-}
-
-json reportHeader(const Stage& stage, const std::string& command) {
-    return {{"command", command},
-            {"commit", commit()},
-            {"date", timestamp()},
-            {"device", toJson(stage.session().caps)},
-            {"volume", toJson(stage.info())}};
-}
-
-std::vector<CsvColumn> columnsOf(std::initializer_list<std::span<const CsvColumn>> parts) {
-    std::vector<CsvColumn> columns;
-    for (const std::span<const CsvColumn> part : parts) {
-        columns.insert(columns.end(), part.begin(), part.end());
-    }
-    return columns;
-}
-
-std::string csvOf(const json& rows, std::span<const CsvColumn> columns) {
-    std::string text;
-    const auto addLine = [&](auto&& cellOf) {
-        for (const CsvColumn& column : columns) {
-            text += cellOf(column) + ",";
-        }
-        text.back() = '\n';
-    };
-    addLine([](const CsvColumn& column) { return std::string(column.heading); });
-    for (const json& row : rows) {
-        addLine([&row](const CsvColumn& column) { return csvCell(row, column.pointer); });
-    }
-    return text;
-}
-
-SmallPicture thumbnail(glm::ivec2 size, const std::vector<glm::vec4>& picture) {
-    const int shrink = std::max(1, std::max(size.x, size.y) / kThumbnailEdge);
-    const glm::ivec2 small = glm::max(size / shrink, glm::ivec2(1));
-    std::vector<glm::vec4> pixels(static_cast<std::size_t>(small.x) * small.y, glm::vec4(0.0F));
-    for (int y = 0; y < small.y * shrink && y < size.y; ++y) {
-        for (int x = 0; x < small.x * shrink && x < size.x; ++x) {
-            pixels[static_cast<std::size_t>(y / shrink) * small.x + x / shrink] +=
-                picture[static_cast<std::size_t>(y) * size.x + x] /
-                static_cast<float>(shrink * shrink);
-        }
-    }
-    return {small, std::move(pixels)};
+RunInfo runOf(const std::string& command) {
+    return {command, commit()};
 }
 
 Result<void> writePage(const fs::path& folder, const std::string& script,

@@ -4,10 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "core/draw/renderer.h"
-#include "core/scene/memory_forecast.h"
-#include "core/scene/scene.h"
+#include "core/gl/caps.h"
 #include "core/scene/texel_format.h"
+#include "core/volume/volume.h"
 #include "platform/egl/egl_context.h"
 
 namespace slabcast {
@@ -35,38 +34,6 @@ struct InputOptions {
 };
 
 Result<Volume> openVolume(const InputOptions& options);
-
-/// What the texture unit's filter may add to a sample, in sampled units.
-double filterErrorSampled(const Session& session, TexelFormat format);
-
-/// What statistics say of the volume after its voxels are gone.
-struct VolumeInfo {
-    std::string name;
-    VoxelType type = VoxelType::U8;
-    std::string unit;
-    glm::ivec3 dims{0};
-    glm::dvec3 spacingMm{0.0};
-    std::int64_t bytes = 0;
-    Modality modality = Modality::Unknown;
-    std::string formatReason;
-    MemoryForecast forecast;
-};
-
-struct LoadedScene {
-    Scene scene;
-    VolumeInfo info;
-    std::optional<Texels> values; // exact, where they are to be kept
-};
-
-/// What the texels take where they are classified so. Fails: as checkFits() and forecastMemory().
-Result<MemoryForecast> checkMemory(const VolumeInfo& info, TexelFormat format,
-                                   Classification classification, const InputOptions& options,
-                                   const gl::Caps& caps);
-
-/// Chooses the texel format, checks that what this classification uploads fits before anything is
-/// allocated on the GPU, builds the scene.
-Result<LoadedScene> openScene(const InputOptions& options, Classification classification,
-                              const Session& session);
 
 /// Host memory at its peak so far, bytes (VmHWM).
 std::int64_t peakHostBytes();

@@ -1,4 +1,6 @@
 #include "platform/cli/skipbench_builds.h"
+#include "perf/frame_times.h"
+#include "perf/report_json.h"
 
 #include <algorithm>
 #include <functional>
@@ -83,13 +85,12 @@ Workshop::Workshop(Stage& stage) : stage_(stage) {
 }
 
 CellVisibility Workshop::visibilityUnder(const Scene& scene) const {
-    return cellVisibility(codes_, scene.texels(), scene.table(),
-                          filterErrorSampled(stage_.session(), scene.texels().format));
+    return cellVisibility(codes_, scene.texels(), scene.table(), stage_.filterErrorSampled());
 }
 
 Result<BuiltSkip> Workshop::buildOnGpu(const SkipOptions& options) const {
     const glm::i64vec3 dims(stage_.info().dims);
-    if (stage_.session().caps.isSoftware && dims.x * dims.y * dims.z > kMostSoftwareVoxels) {
+    if (stage_.caps().isSoftware && dims.x * dims.y * dims.z > kMostSoftwareVoxels) {
         return fail(ErrorCode::DeviceUnsupported,
                     "a software driver takes minutes for so many voxels: not measured");
     }

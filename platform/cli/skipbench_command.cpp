@@ -2,7 +2,11 @@
 
 #include <fmt/core.h>
 
+#include "perf/csv.h"
+#include "perf/report_folder.h"
+#include "perf/report_json.h"
 #include "platform/cli/commands.h"
+#include "platform/cli/open_stage.h"
 #include "platform/cli/report_files.h"
 #include "platform/cli/skipbench_builds.h"
 #include "platform/cli/skipbench_figures.h"
@@ -199,16 +203,17 @@ Result<json> measured(const SkipbenchOptions& options, const std::string& comman
     for (const std::string& input : options.volumes) {
         const SceneOptions scene = sceneOf(options, input);
         {
-            Result<Stage> stage = Stage::open(scene);
-            if (!stage) {
-                return tl::unexpected(stage.error());
+            Result<OpenStage> opened = openStage(scene);
+            if (!opened) {
+                return tl::unexpected(opened.error());
             }
+            Stage* const stage = &opened->stage;
             SkipBench bench{*stage, options, labelOf(stage->info().name, volumes), progress};
             if (Result<void> done = measureVolume(bench, input, volumes); !done) {
                 return tl::unexpected(done.error());
             }
             rows.insert(rows.end(), bench.rows.begin(), bench.rows.end());
-            report = reportHeader(*stage, command);
+            report = reportHeader(runOf(command), *stage);
         }
         if (volumes.size() == 1) {
             const Result<json> sizes =

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "perf/frame_times.h"
 #include "platform/cli/skipbench_race.h"
 
 namespace slabcast {

@@ -10,6 +10,8 @@
 #include "core/skip/chebyshev.h"
 #include "core/skip/occupancy.h"
 #include "core/skip/proximity_cloud.h"
+#include "perf/frame_times.h"
+#include "perf/report_json.h"
 #include "platform/cli/skipbench_race.h"
 #include "platform/json/transfer_json.h"
 

@@ -1,4 +1,6 @@
 #include "platform/cli/skipbench_race.h"
+#include "perf/frame_times.h"
+#include "perf/report_json.h"
 
 #include <algorithm>
 #include <numeric>
@@ -68,7 +70,7 @@ Result<Entrant> entrantOf(const Stage& stage, const Scene& scene, const Settings
                           json row) {
     Settings own = settings;
     own.skip = settings.skip.value_or(scene.skip().options.structure);
-    return plan(scene.facts(), own, stage.session().caps, {}).map([&](FramePlan plan) {
+    return plan(scene.facts(), own, stage.caps(), {}).map([&](FramePlan plan) {
         row.update({{"planes", plan.planes},
                     {"layersPerPlane", plan.layersPerPlane},
                     {"tighten", plan.tighten},

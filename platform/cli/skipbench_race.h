@@ -4,7 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "platform/cli/draw.h"
+#include "perf/report_json.h"
+#include "perf/stage.h"
+#include "platform/cli/options.h"
 
 namespace slabcast {
 

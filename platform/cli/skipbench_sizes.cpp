@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "platform/cli/open_stage.h"
 #include "platform/cli/skipbench_builds.h"
 #include "platform/cli/skipbench_frames.h"
 
@@ -67,10 +68,11 @@ Result<json> measureSizes(const SkipbenchOptions& options, const SceneOptions& v
         progress.show(fmt::format("{}: resampled to {}^3", label, edge));
         SceneOptions resampled = volume;
         resampled.input.cubeEdge = edge;
-        Result<Stage> stage = Stage::open(resampled);
-        if (!stage) {
-            return tl::unexpected(stage.error());
+        Result<OpenStage> opened = openStage(resampled);
+        if (!opened) {
+            return tl::unexpected(opened.error());
         }
+        Stage* const stage = &opened->stage;
         SkipBench bench{*stage, options, label, progress};
         const Result<json> measured = measureSize(bench, edge);
         if (!measured) {

@@ -5,7 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "platform/cli/draw.h"
+#include "perf/report_json.h"
+#include "perf/stage.h"
+#include "platform/cli/options.h"
 #include "platform/cli/progress.h"
 
 namespace slabcast {

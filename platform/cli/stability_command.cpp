@@ -4,9 +4,14 @@
 
 #include <fmt/core.h>
 
+#include "perf/csv.h"
+#include "perf/report_folder.h"
+#include "perf/report_json.h"
 #include "perf/stability/bench.h"
+#include "perf/stage.h"
 #include "platform/cli/commands.h"
-#include "platform/cli/draw.h"
+#include "platform/cli/commit.h"
+#include "platform/cli/open_stage.h"
 #include "platform/cli/picture_file.h"
 #include "platform/cli/progress.h"
 #include "platform/cli/report_files.h"

@@ -2,8 +2,13 @@
 
 #include <fmt/core.h>
 
+#include "perf/csv.h"
+#include "perf/frame_times.h"
+#include "perf/report_folder.h"
+#include "perf/report_json.h"
+#include "perf/stage.h"
 #include "platform/cli/commands.h"
-#include "platform/cli/draw.h"
+#include "platform/cli/open_stage.h"
 #include "platform/cli/picture_file.h"
 #include "platform/cli/progress.h"
 #include "platform/cli/report_files.h"
@@ -72,7 +77,7 @@ std::vector<Settings> rowSettings(const Stage& stage, const SweepOptions& option
 Result<json> measureRow(Stage& stage, const SweepOptions& options, const Settings& settings,
                         int index) {
     const Result<FramePlan> plan =
-        slabcast::plan(stage.scene().facts(), settings, stage.session().caps, {});
+        slabcast::plan(stage.scene().facts(), settings, stage.caps(), {});
     if (!plan) {
         return tl::unexpected(plan.error());
     }
@@ -149,7 +154,7 @@ json conditions(const Stage& stage, const SweepOptions& o) {
 json header(Stage& stage, const SweepOptions& options, const std::string& command) {
     const GpuMemory gpu = stage.renderer().gpuMemory();
     const BuiltSkip& skip = stage.scene().skip();
-    json result = reportHeader(stage, command);
+    json result = reportHeader(runOf(command), stage);
     result["conditions"] = conditions(stage, options);
     result["memory"] = {{"peakHostBytes", peakHostBytes()},
                         {"volumeBytes", stage.info().bytes},
@@ -183,10 +188,11 @@ Result<void> sweepCommand(const SweepOptions& options, const std::string& comman
     // Compile times are part of the report: a driver that finds its earlier results would report
     // none.
     setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
-    Result<Stage> stage = Stage::open(options);
-    if (!stage) {
-        return tl::unexpected(stage.error());
+    Result<OpenStage> opened = openStage(options);
+    if (!opened) {
+        return tl::unexpected(opened.error());
     }
+    Stage* const stage = &opened->stage;
     const fs::path folder = options.outputFolder;
     if (Result<void> made = makeReportFolder(folder / "thumbnails"); !made) {
         return made;

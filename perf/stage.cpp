@@ -1,23 +1,20 @@
-#include "platform/cli/draw.h"
+#include "perf/stage.h"
 
 #include <algorithm>
 
-#include <fmt/core.h>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "core/base/stopwatch.h"
 #include "core/draw/ratio_tuner.h"
 #include "core/gl/api.h"
-#include "platform/cli/progress.h"
-#include "platform/cli/transfer_choice.h"
 
 namespace slabcast {
 
 namespace {
 
 /// Planes converge here, in bounding-sphere radii: at the volume's centre.
-double convergenceDepth(const SceneOptions& options, const BoundingSphere& sphere) {
-    return std::max(options.camera.distanceRadii, 0.1) * sphere.radiusMm;
+double convergenceDepth(const OrbitCamera& camera, const BoundingSphere& sphere) {
+    return std::max(camera.distanceRadii, 0.1) * sphere.radiusMm;
 }
 
 /// Turned about the vertical axis through the volume's centre.
@@ -28,71 +25,105 @@ glm::dmat4 turned(double degrees, const BoundingSphere& sphere) {
            back;
 }
 
+/// Of full scale.
+double maxFilterError(const StageDevice& device, TexelFormat format) {
+    const auto test = std::find_if(device.formats.begin(), device.formats.end(),
+                                   [=](const TexelFormatTest& t) { return t.format == format; });
+    return test == device.formats.end() ? 0.0 : test->maxFilterError;
+}
+
+/// What the texels take where they are classified so. Fails: as checkFits() and forecastMemory().
+Result<MemoryForecast> checkMemory(const VolumeInfo& info, TexelFormat format,
+                                   Classification classification, const StageDesc& desc,
+                                   const gl::Caps& caps) {
+    const bool preclassified = classification == Classification::Pre;
+    return checkFits(info.dims, uploadedBytesPerTexel(format, preclassified), caps,
+                     desc.gpuBudgetBytes)
+        .and_then([&] { return forecastMemory(info.dims, info.type, format, preclassified); });
+}
+
 } // namespace
 
-Result<Stage> Stage::open(const SceneOptions& options) {
-    Result<Session> session = openSession();
-    if (!session) {
-        return tl::unexpected(session.error());
+Result<Stage> Stage::open(StageDevice device, Volume volume, const VolumeStatistics& statistics,
+                          StageDesc desc, Watcher watcher) {
+    VolumeInfo info{.name = volume.name,
+                    .type = volume.type,
+                    .unit = volume.unit,
+                    .dims = volume.geometry.dims,
+                    .spacingMm = volume.geometry.spacingMm,
+                    .bytes = static_cast<std::int64_t>(volume.voxels.size()),
+                    .modality = likelyModality(volume, statistics)};
+    const TexelFormat format = chooseTexelFormat(volume.type, statistics, desc.exactTexels,
+                                                 device.formats, &info.formatReason);
+    const Result<MemoryForecast> forecast =
+        checkMemory(info, format, desc.settings.classification, desc, device.caps);
+    if (!forecast) {
+        return tl::unexpected(forecast.error());
     }
-    Progress progress("reading " + options.input.volume);
-    Result<LoadedScene> loaded =
-        openScene(options.input, options.settings.classification, *session);
-    if (!loaded) {
-        return tl::unexpected(loaded.error());
-    }
-    Result<TransferFunction> tf = chooseTransferFunction(
-        options.tf, {loaded->scene.statistics(), loaded->info.unit}, loaded->info.modality);
-    if (!tf) {
-        return tl::unexpected(tf.error());
-    }
-    Result<Renderer> renderer = Renderer::create(session->caps);
+    info.forecast = *forecast;
+    Result<Renderer> renderer = Renderer::create(device.caps);
     if (!renderer) {
         return tl::unexpected(renderer.error());
     }
-    Stage stage(options, std::move(*session), std::move(*loaded), std::move(*renderer));
-    if (Result<void> set = stage.setLook(std::move(*tf), options.settings.classification); !set) {
+    std::optional<Texels> values;
+    if (desc.keepValues) {
+        values = encodeTexels(volume, statistics, TexelFormat::R32fExact);
+    }
+    Scene scene = Scene::create(std::move(volume), format, maxFilterError(device, format));
+    Stage stage(std::move(device), std::move(desc), std::move(watcher), std::move(scene),
+                std::move(*renderer));
+    stage.info_ = std::move(info);
+    stage.values_ = std::move(values);
+    const Classification classification = stage.desc_.settings.classification;
+    if (Result<void> set = stage.setLook(stage.desc_.tf, classification); !set) {
         return tl::unexpected(set.error());
     }
     return stage;
 }
 
 Result<void> Stage::setLook(TransferFunction tf, Classification classification) {
-    const Progress progress("finding what the transfer function makes visible");
-    const Settings& s = options_.settings;
+    const ProgressLine line(watcher_, "finding what the transfer function makes visible");
+    const Settings& s = desc_.settings;
     Look look{.tf = std::move(tf), .space = s.space, .classification = classification};
     if (s.shaded) {
         look.shading = ShadingParameters{};
     }
     // Towards the eye: a baked head light stands where the eye is at the first frame.
-    const glm::dmat3 rotation(viewFromModel(options_.camera, scene().geometry().boundingSphere()));
+    const glm::dmat3 rotation(viewFromModel(desc_.camera, scene().geometry().boundingSphere()));
     look.bakedLightDirection = glm::transpose(rotation) * glm::dvec3(0.0, 0.0, 1.0);
-    SkipOptions skip = options_.skip;
+    SkipOptions skip = desc_.skip;
     skip.structure = s.skip.value_or(skip.structure);
     if (s.tighten && skip.structure == SkipStructure::None) {
         skip.structure = SkipStructure::Blocks; // for the planes alone
     }
-    const SkipBuilder builder = options_.skipBuilder;
-    const bool onGpu = skip.structure != SkipStructure::None &&
-                       (builder == SkipBuilder::Gpu ||
-                        (builder == SkipBuilder::Auto && !session_.caps.isSoftware));
+    const SkipBuilder builder = desc_.skipBuilder;
+    const bool onGpu =
+        skip.structure != SkipStructure::None &&
+        (builder == SkipBuilder::Gpu || (builder == SkipBuilder::Auto && !device_.caps.isSoftware));
     if (!onGpu) {
-        return loaded_.scene.setLook(look, skip, maxTableSize());
+        return scene_.setLook(look, skip, maxTableSize());
     }
     constexpr SkipOptions kNotYet{.structure = SkipStructure::None};
-    if (Result<void> set = loaded_.scene.setLook(look, kNotYet, maxTableSize()); !set) {
+    if (Result<void> set = scene_.setLook(look, kNotYet, maxTableSize()); !set) {
         return set;
     }
-    Result<void> built = renderer_.buildSkip(loaded_.scene, skip);
+    Result<void> built = renderer_.buildSkip(scene_, skip);
     if (built || built.error().code != ErrorCode::DeviceUnsupported) {
         return built;
     }
-    fmt::print(stderr, "slabcast: {}\n", built.error().detail);
-    return loaded_.scene.setLook(look, skip, maxTableSize());
+    if (watcher_.say) {
+        watcher_.say(built.error().detail);
+    }
+    return scene_.setLook(look, skip, maxTableSize());
 }
 
 int Stage::maxTableSize() const {
-    return static_cast<int>(std::min<std::int64_t>(4096, session_.caps.maxTextureSize));
+    return static_cast<int>(std::min<std::int64_t>(4096, device_.caps.maxTextureSize));
+}
+
+double Stage::filterErrorSampled() const {
+    const TexelFormat format = scene_.texels().format;
+    return maxFilterError(device_, format) * fullScaleSampled(format);
 }
 
 Result<Scene> Stage::variation(const TransferFunction& tf, const SkipOptions& skip) const {
@@ -110,32 +141,36 @@ Result<void> Stage::reclassify(Classification classification) {
         return {};
     }
     const Result<MemoryForecast> forecast =
-        checkMemory(info(), scene().texels().format, classification, options_.input, session_.caps);
+        checkMemory(info_, scene_.texels().format, classification, desc_, device_.caps);
     if (!forecast) {
         return tl::unexpected(forecast.error());
     }
-    loaded_.info.forecast = *forecast;
+    info_.forecast = *forecast;
     return setLook(scene().look().tf, classification);
 }
 
 Result<FramePlan> Stage::decide(const Settings& settings) {
     std::vector<RatioMeasurement> measurements;
     if (!settings.planes && !settings.layersPerPlane && scene().facts().anythingVisible) {
-        const Progress progress("measuring ratios on this device");
+        const ProgressLine line(watcher_, "measuring ratios on this device");
         Result<std::vector<RatioMeasurement>> measured =
-            measureRatios(renderer_, scene(), settings, session_.caps, views(0.0));
+            measureRatios(renderer_, scene(), settings, device_.caps, views(0.0));
         if (!measured) {
             return tl::unexpected(measured.error());
         }
         measurements = std::move(*measured);
     }
-    return plan(scene().facts(), settings, session_.caps, measurements);
+    return slabcast::plan(scene().facts(), settings, device_.caps, measurements);
+}
+
+Result<FramePlan> Stage::plan(const Settings& settings) const {
+    return slabcast::plan(scene().facts(), settings, device_.caps, {});
 }
 
 Result<void> Stage::prepare(const FramePlan& plan) {
     space_ = plan.space;
     const GLenum format = plan.target == TargetFormat::Rgba8 ? GL_RGBA8 : GL_RGBA16F;
-    if (Result<void> made = target_.resize(options_.size.x, options_.size.y, {format}); !made) {
+    if (Result<void> made = target_.resize(desc_.size.x, desc_.size.y, {format}); !made) {
         return made;
     }
     return renderer_.prepare(scene(), plan, views(0.0));
@@ -143,29 +178,29 @@ Result<void> Stage::prepare(const FramePlan& plan) {
 
 std::vector<ViewTarget> Stage::views(double turnDegrees) const {
     const BoundingSphere sphere = scene().geometry().boundingSphere();
-    const int eyes = options_.stereoIpdMm ? 2 : 1;
-    const int width = options_.size.x / eyes;
-    const int height = options_.size.y;
+    const int eyes = desc_.stereoIpdMm ? 2 : 1;
+    const int width = desc_.size.x / eyes;
+    const int height = desc_.size.y;
     View centre;
-    centre.viewFromModel = viewFromModel(options_.camera, sphere) * turned(turnDegrees, sphere);
-    centre.frustum = symmetricFrustum(options_.fovDegrees, static_cast<double>(width) / height);
+    centre.viewFromModel = viewFromModel(desc_.camera, sphere) * turned(turnDegrees, sphere);
+    centre.frustum = symmetricFrustum(desc_.fovDegrees, static_cast<double>(width) / height);
     const TargetEncoding encoding =
         space_ == CompositingSpace::Display ? TargetEncoding::Encoded : TargetEncoding::Linear;
     if (eyes == 1) {
         return {{centre, target_.framebuffer(), {0, 0, width, height}, encoding}};
     }
     const auto pair =
-        stereoViews(centre, *options_.stereoIpdMm, convergenceDepth(options_, sphere));
+        stereoViews(centre, *desc_.stereoIpdMm, convergenceDepth(desc_.camera, sphere));
     return {{pair[0], target_.framebuffer(), {0, 0, width, height}, encoding},
             {pair[1], target_.framebuffer(), {width, 0, width, height}, encoding}};
 }
 
 Result<double> Stage::drawTimed(const FramePlan& plan, double turnDegrees) {
     glm::vec4 clear(0.0F);
-    if (options_.background) {
+    if (desc_.background) {
         const glm::dvec3 stored = space_ == CompositingSpace::Display
-                                      ? *options_.background
-                                      : linearFromSrgb(*options_.background);
+                                      ? *desc_.background
+                                      : linearFromSrgb(*desc_.background);
         clear = glm::vec4(glm::dvec4(stored, 1.0));
     }
     return drawOn(clear, plan, turnDegrees);
@@ -196,7 +231,7 @@ Result<WorkCounters> Stage::countWork(const FramePlan& plan) {
 }
 
 Result<std::vector<PixelWork>> Stage::workPerPixel(const FramePlan& plan) {
-    const glm::ivec2 size = options_.size;
+    const glm::ivec2 size = desc_.size;
     std::vector<PixelWork> picture(static_cast<std::size_t>(size.x) * size.y);
     for (const ViewTarget& target : views(0.0)) {
         const Result<std::vector<PixelWork>> work = renderer_.workPerPixel(scene(), plan, target);
@@ -232,81 +267,6 @@ std::vector<glm::vec4> Stage::picture(bool encoded) const {
         flipped.insert(flipped.end(), row, row + target_.width());
     }
     return flipped;
-}
-
-FrameTimes summarise(std::vector<double> ms) {
-    std::sort(ms.begin(), ms.end());
-    const auto at = [&ms](double quantile) {
-        return ms.empty() ? 0.0
-                          : ms[static_cast<std::size_t>(
-                                quantile * static_cast<double>(ms.size() - 1) + 0.5)];
-    };
-    // Of an even number the mean of the middle two.
-    const std::size_t middle = ms.size() / 2;
-    const double median =
-        ms.size() % 2 == 1 || ms.empty() ? at(0.5) : 0.5 * (ms[middle - 1] + ms[middle]);
-    return {median, at(0.0), at(1.0), at(0.1), at(0.9), static_cast<int>(ms.size())};
-}
-
-nlohmann::json toJson(const gl::Caps& caps) {
-    return {{"vendor", caps.vendor},
-            {"renderer", caps.renderer},
-            {"version", caps.driver},
-            {"software", caps.isSoftware}};
-}
-
-nlohmann::json toJson(const VolumeInfo& info) {
-    return {{"name", info.name},
-            {"dims", {info.dims.x, info.dims.y, info.dims.z}},
-            {"type", name(info.type)},
-            {"unit", info.unit},
-            {"spacingMm", {info.spacingMm.x, info.spacingMm.y, info.spacingMm.z}},
-            {"bytes", info.bytes}};
-}
-
-nlohmann::json toJson(const FramePlan& plan) {
-    nlohmann::json reasons = nlohmann::json::array();
-    for (const ReasonText& reason : explained(plan)) {
-        reasons.push_back({{"what", reason.what}, {"why", reason.why}});
-    }
-    return {{"planes", plan.planes},
-            {"layersPerPlane", plan.layersPerPlane},
-            {"layers", plan.lattice.total},
-            {"layerSpacingMm", plan.lattice.spacingMm},
-            {"lattice", name(plan.lattice.kind)},
-            {"jitter", plan.lattice.jittered},
-            {"variant", name(plan.variant)},
-            {"tighten", plan.tighten},
-            {"termination", plan.variant.terminates || plan.planesPerMark > 0
-                                ? nlohmann::json(plan.terminationAlpha)
-                                : nlohmann::json("off")},
-            {"order", name(plan.order)},
-            {"planesPerMark", plan.planesPerMark},
-            {"target", name(plan.target)},
-            {"space", name(plan.space)},
-            {"drawsNothing", plan.drawsNothing},
-            {"reasons", std::move(reasons)}};
-}
-
-nlohmann::json toJson(const FrameTimes& t) {
-    if (t.count == 0) {
-        return nullptr;
-    }
-    return {{"median", t.median}, {"min", t.min}, {"max", t.max},
-            {"p10", t.p10},       {"p90", t.p90}, {"n", t.count}};
-}
-
-nlohmann::json toJson(const Result<WorkCounters>& counters) {
-    if (!counters) {
-        return nullptr;
-    }
-    return {{"fragments", counters->fragments},
-            {"layers_evaluated", counters->layersEvaluated},
-            {"layers_skipped", counters->layersSkipped},
-            {"volume_fetches", counters->volumeFetches},
-            {"skip_fetches", counters->skipFetches},
-            {"stretches", counters->stretches},
-            {"blocks_visited", counters->blocksVisited}};
 }
 
 } // namespace slabcast

@@ -1,0 +1,93 @@
+#include "perf/report_json.h"
+
+#include <ctime>
+
+#include <nlohmann/json.hpp>
+
+#include "perf/stage.h"
+
+namespace slabcast {
+
+using nlohmann::json;
+
+json toJson(const gl::Caps& caps) {
+    return {{"vendor", caps.vendor},
+            {"renderer", caps.renderer},
+            {"version", caps.driver},
+            {"software", caps.isSoftware}};
+}
+
+json toJson(const VolumeInfo& info) {
+    return {{"name", info.name},
+            {"dims", {info.dims.x, info.dims.y, info.dims.z}},
+            {"type", name(info.type)},
+            {"unit", info.unit},
+            {"spacingMm", {info.spacingMm.x, info.spacingMm.y, info.spacingMm.z}},
+            {"bytes", info.bytes}};
+}
+
+json toJson(const FramePlan& plan) {
+    json reasons = json::array();
+    for (const ReasonText& reason : explained(plan)) {
+        reasons.push_back({{"what", reason.what}, {"why", reason.why}});
+    }
+    const bool terminates = plan.variant.terminates || plan.planesPerMark > 0;
+    return {{"planes", plan.planes},
+            {"layersPerPlane", plan.layersPerPlane},
+            {"layers", plan.lattice.total},
+            {"layerSpacingMm", plan.lattice.spacingMm},
+            {"lattice", name(plan.lattice.kind)},
+            {"jitter", plan.lattice.jittered},
+            {"variant", name(plan.variant)},
+            {"tighten", plan.tighten},
+            {"termination", terminates ? json(plan.terminationAlpha) : json("off")},
+            {"order", name(plan.order)},
+            {"planesPerMark", plan.planesPerMark},
+            {"target", name(plan.target)},
+            {"space", name(plan.space)},
+            {"drawsNothing", plan.drawsNothing},
+            {"reasons", std::move(reasons)}};
+}
+
+json toJson(const FrameTimes& t) {
+    if (t.count == 0) {
+        return nullptr;
+    }
+    return {{"median", t.median}, {"min", t.min}, {"max", t.max},
+            {"p10", t.p10},       {"p90", t.p90}, {"n", t.count}};
+}
+
+json toJson(const Result<WorkCounters>& counters) {
+    if (!counters) {
+        return nullptr;
+    }
+    return {{"fragments", counters->fragments},
+            {"layers_evaluated", counters->layersEvaluated},
+            {"layers_skipped", counters->layersSkipped},
+            {"volume_fetches", counters->volumeFetches},
+            {"skip_fetches", counters->skipFetches},
+            {"stretches", counters->stretches},
+            {"blocks_visited", counters->blocksVisited}};
+}
+
+json reportHeader(const RunInfo& run, const gl::Caps& caps) {
+    return {{"command", run.command},
+            {"commit", run.commit},
+            {"date", timestamp()},
+            {"device", toJson(caps)}};
+}
+
+json reportHeader(const RunInfo& run, const Stage& stage) {
+    json header = reportHeader(run, stage.caps());
+    header["volume"] = toJson(stage.info());
+    return header;
+}
+
+std::string timestamp() {
+    const std::time_t now = std::time(nullptr);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
+    return text;
+}
+
+} // namespace slabcast

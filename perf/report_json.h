@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "core/base/error.h"
+#include "core/draw/renderer.h"
+#include "perf/frame_times.h"
+#include "perf/volume_info.h"
+
+namespace slabcast {
+
+class Stage;
+
+// JSON fragments that reports share. Keys are stable: people plot them.
+nlohmann::json toJson(const gl::Caps& caps);
+nlohmann::json toJson(const VolumeInfo& info);
+nlohmann::json toJson(const FramePlan& plan);
+nlohmann::json toJson(const FrameTimes& times);              // null of none
+nlohmann::json toJson(const Result<WorkCounters>& counters); // null where they cannot be had
+
+/// What a report says of the run itself, and only the program knows.
+struct RunInfo {
+    std::string command; // as it was typed
+    std::string commit;  // of the build
+};
+
+/// What was run, of which build, when and on what: what every report begins with.
+nlohmann::json reportHeader(const RunInfo& run, const gl::Caps& caps);
+/// And with which volume.
+nlohmann::json reportHeader(const RunInfo& run, const Stage& stage);
+
+/// Now, as 2026-11-24T10:00:00Z.
+std::string timestamp();
+
+} // namespace slabcast
