@@ -1,7 +1,6 @@
 #include "perf/stability/case.h"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace slabcast::stability {
 
@@ -12,12 +11,6 @@ std::string named(std::initializer_list<std::string_view> parts) {
         name += part;
     }
     return name;
-}
-
-std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
 }
 
 Result<void> verdict(std::span<const Case> cases) {

@@ -11,6 +11,7 @@
 #include <glm/glm.hpp>
 
 #include "core/base/error.h"
+#include "perf/number.h"
 
 namespace slabcast::stability {
 
@@ -69,7 +70,6 @@ struct Case {
 
 /// "one-unit step, slicing, rgba8": the parts of a name, those that are empty left out.
 std::string named(std::initializer_list<std::string_view> parts);
-std::string number(double value); // three digits
 
 /// Fails: Internal, with how many cases exceed their bounds, and the first one's name.
 /// Tested by: stability_gl_test.cpp

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "platform/cli/edit_writer.h"
+#include "perf/edit/writer.h"
 #include "platform/json/transfer_json.h"
 
 namespace slabcast {

@@ -5,15 +5,13 @@
 
 namespace slabcast {
 
-namespace {
-
-StageDesc descOf(const SceneOptions& o, TransferFunction tf) {
+StageDesc stageDescOf(const SceneOptions& o) {
     StageDesc desc{.size = o.size,
                    .camera = o.camera,
                    .fovDegrees = o.fovDegrees,
                    .stereoIpdMm = o.stereoIpdMm,
                    .background = o.background,
-                   .tf = std::move(tf),
+                   .tf = {},
                    .settings = o.settings,
                    .skip = o.skip,
                    .skipBuilder = o.skipBuilder,
@@ -25,15 +23,10 @@ StageDesc descOf(const SceneOptions& o, TransferFunction tf) {
     return desc;
 }
 
-} // namespace
-
-Result<OpenStage> openStage(const SceneOptions& options) {
-    Result<Session> session = openSession();
-    if (!session) {
-        return tl::unexpected(session.error());
-    }
-    const Progress progress("reading " + options.input.volume);
-    Result<Volume> volume = openVolume(options.input);
+Result<Stage> openStage(const Session& session, const InputOptions& input, const std::string& tf,
+                        StageDesc desc) {
+    const Progress progress("reading " + input.volume);
+    Result<Volume> volume = openVolume(input);
     if (!volume) {
         return tl::unexpected(volume.error());
     }
@@ -42,17 +35,25 @@ Result<OpenStage> openStage(const SceneOptions& options) {
             " voxels are NaN or infinite: treated as the lowest value");
     }
     const VolumeStatistics statistics = computeStatistics(*volume);
-    Result<TransferFunction> tf = chooseTransferFunction(options.tf, {statistics, volume->unit},
-                                                         likelyModality(*volume, statistics));
-    if (!tf) {
-        return tl::unexpected(tf.error());
+    Result<TransferFunction> chosen =
+        chooseTransferFunction(tf, {statistics, volume->unit}, likelyModality(*volume, statistics));
+    if (!chosen) {
+        return tl::unexpected(chosen.error());
     }
-    Result<Stage> stage = Stage::open({session->caps, session->formats}, std::move(*volume),
-                                      statistics, descOf(options, std::move(*tf)), terminal());
-    if (!stage) {
-        return tl::unexpected(stage.error());
+    desc.tf = std::move(*chosen);
+    return Stage::open({session.caps, session.formats}, std::move(*volume), statistics,
+                       std::move(desc), terminal());
+}
+
+Result<OpenStage> openStage(const SceneOptions& options) {
+    Result<Session> session = openSession();
+    if (!session) {
+        return tl::unexpected(session.error());
     }
-    return OpenStage{std::move(*session), std::move(*stage)};
+    return openStage(*session, options.input, options.tf, stageDescOf(options))
+        .map([&](Stage stage) {
+            return OpenStage{std::move(*session), std::move(stage)};
+        });
 }
 
 } // namespace slabcast

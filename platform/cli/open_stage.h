@@ -11,7 +11,15 @@ struct OpenStage {
     Stage stage;
 };
 
-/// Opens device and volume, applies the look; says on stderr what it does meanwhile.
+/// What a stage of these options is opened with, but for its transfer function.
+StageDesc stageDescOf(const SceneOptions& options);
+
+/// Opens a volume in a context that is there, under a TF by chooseTransferFunction(); says on
+/// stderr what it does meanwhile.
+Result<Stage> openStage(const Session& session, const InputOptions& input, const std::string& tf,
+                        StageDesc desc);
+
+/// Opens the device too.
 Result<OpenStage> openStage(const SceneOptions& options);
 
 } // namespace slabcast

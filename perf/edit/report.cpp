@@ -1,0 +1,149 @@
+#include "perf/edit/report.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "perf/csv.h"
+#include "perf/edit/summary.h"
+#include "perf/report_json.h"
+#include "perf/stage.h"
+
+namespace slabcast {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr CsvColumn kColumns[] = {{"frame", "/frame"},
+                                  {"step", "/step"},
+                                  {"edit", "/edit"},
+                                  {"progress", "/progress"},
+                                  {"structure", "/structure"},
+                                  {"frame_ms", "/frameMs"},
+                                  {"edit_ms", "/parts/editMs"},
+                                  {"work_ms", "/parts/workMs"},
+                                  {"prepare_ms", "/parts/prepareMs"},
+                                  {"draw_ms", "/parts/drawMs"},
+                                  {"octree_ms", "/octreeMs"},
+                                  {"octree_worst_ms", "/octreeWorstMs"},
+                                  {"over_octree", "/overOctree"},
+                                  {"naive_ms", "/naiveMs"},
+                                  {"equal", "/equal"},
+                                  {"fragments", "/counters/fragments"},
+                                  {"layers_evaluated", "/counters/layers_evaluated"},
+                                  {"layers_skipped", "/counters/layers_skipped"},
+                                  {"volume_fetches", "/counters/volume_fetches"},
+                                  {"skip_fetches", "/counters/skip_fetches"},
+                                  {"stretches", "/counters/stretches"},
+                                  {"blocks_visited", "/counters/blocks_visited"}};
+
+json conditionsOf(const Stage& stage, const EditDesc& desc, const FramePlan& plan) {
+    const StageDesc& picture = stage.desc();
+    const OrbitCamera& c = picture.camera;
+    return {{"size", {picture.size.x, picture.size.y}},
+            {"camera", {c.azimuthDegrees, c.elevationDegrees, c.distanceRadii}},
+            {"turnDegrees", desc.turnDegrees},
+            {"start", desc.script.start.name},
+            {"edits", desc.origin},
+            {"classification", name(desc.settings.classification)},
+            {"planes", plan.planes},
+            {"layersPerPlane", plan.layersPerPlane},
+            {"workBudgetMs", desc.workBudgetMs},
+            {"quietFrames", desc.live.quietFrames},
+            {"octreeFrames", desc.octreeFrames},
+            {"replays", desc.replays},
+            {"verified", desc.verify}};
+}
+
+json buildOf(const EditBuild& build) {
+    return {{"structure", name(build.structure)},
+            {"blockEdge", build.blockEdge},
+            {"gpuBytes", build.gpuBytes}};
+}
+
+json buildsOf(const EditBuilds& builds) {
+    json result = {{"always", buildOf(builds.always)}, {"naiveMs", builds.naiveMs}};
+    result["always"]["ms"] = builds.always.ms;
+    if (builds.settled) {
+        result["settled"] = buildOf(*builds.settled);
+        result["settled"]["lastMs"] = builds.settled->ms > 0.0 ? json(builds.settled->ms) : json();
+    }
+    return result;
+}
+
+json rowOf(const EditRow& row, std::size_t index) {
+    json result = {{"frame", index},
+                   {"step", row.step},
+                   {"edit", row.edited},
+                   {"progress", name(row.progress)},
+                   {"structure", row.structure},
+                   {"frameMs", row.frameMs},
+                   {"parts",
+                    {{"editMs", row.editMs},
+                     {"workMs", row.workMs},
+                     {"prepareMs", row.prepareMs},
+                     {"drawMs", row.drawMs}}},
+                   {"octreeMs", row.octreeMs},
+                   {"octreeWorstMs", row.octreeWorstMs},
+                   {"overOctree", row.frameMs / row.octreeMs},
+                   {"naiveMs", row.naiveMs},
+                   {"counters", toJson(row.counters)}};
+    if (row.equal) {
+        result["equal"] = *row.equal;
+    }
+    return result;
+}
+
+json summaryJson(const EditSummary& s, const EditDesc& desc, double worstOfReplays) {
+    json summary = {{"compared_with", name(desc.live.always.structure)},
+                    {"worst_over_octree_frame", s.overOctree.max},
+                    {"over_octree_frame", toJson(s.overOctree)},
+                    {"worst_added_over_octree_frame", s.worstAdded},
+                    {"worst_octree_frame_over_median", s.worstOctreeSpread},
+                    {"worst_of_single_replays", worstOfReplays},
+                    {"frames_over_1.5_octree_frames", s.framesOverOctreeBudget},
+                    {"frames", s.frames},
+                    {"edits", s.edits},
+                    {"budget_ms", s.budgetMs},
+                    {"budget_given", desc.budgetMs.has_value()},
+                    {"frames_over_budget", s.framesOverBudget},
+                    {"frame_ms", toJson(s.frameMs)},
+                    {"edit_frame_ms", toJson(s.editFrameMs)},
+                    {"edit_ms", toJson(s.editMs)},
+                    {"octree_frame_ms", toJson(s.octreeMs)},
+                    {"naive",
+                     {{"frame_ms", toJson(s.naiveMs)},
+                      {"edit_frame_ms", toJson(s.naiveEditFrameMs)},
+                      {"worst_over_octree_frame", s.worstNaive},
+                      {"frames_over_budget", s.naiveFramesOverBudget}}},
+                    {"frames_by_structure", s.framesByStructure},
+                    {"hand_overs", s.handOvers}};
+    if (desc.verify) {
+        summary["frames_equal"] = s.framesEqual;
+        summary["frames_to_correct"] = s.framesToCorrect ? json(*s.framesToCorrect) : json();
+    }
+    return summary;
+}
+
+} // namespace
+
+EditReport editReportOf(const Stage& stage, const EditDesc& desc, const EditMeasured& measured,
+                        const RunInfo& run) {
+    const std::vector<EditRow> rows = mediansOf(measured.replays);
+    json report = reportHeader(run, stage);
+    report["conditions"] = conditionsOf(stage, desc, measured.decided);
+    report["builds"] = buildsOf(measured.builds);
+    report["summary"] =
+        summaryJson(summaryOf(rows, desc.budgetMs), desc, worstOverOctree(measured.replays));
+    for (const EditRow& row : rows) {
+        report["rows"].push_back(rowOf(row, report["rows"].size()));
+    }
+    const auto isWrong = [](const EditRow& row) { return !row.equal.value_or(true); };
+    return {.json = report.dump(2) + "\n",
+            .csv = csvOf(report["rows"], kColumns),
+            .frames = static_cast<int>(rows.size()),
+            .wrongFrames = static_cast<int>(std::count_if(rows.begin(), rows.end(), isWrong))};
+}
+
+} // namespace slabcast

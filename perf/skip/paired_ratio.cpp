@@ -1,0 +1,19 @@
+#include "perf/skip/paired_ratio.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "core/base/error.h"
+#include "perf/frame_times.h"
+
+namespace slabcast::skipbench {
+
+double pairedRatio(std::span<const double> a, std::span<const double> b) {
+    SLABCAST_EXPECTS(a.size() == b.size(), b.size());
+    std::vector<double> ratios(a.size());
+    std::transform(a.begin(), a.end(), b.begin(), ratios.begin(),
+                   [](double x, double y) { return x / y; });
+    return summarise(std::move(ratios)).median;
+}
+
+} // namespace slabcast::skipbench

@@ -1,0 +1,268 @@
+#include "perf/skip/report.h"
+
+#include <nlohmann/json.hpp>
+
+#include "perf/csv.h"
+#include "perf/report_json.h"
+#include "perf/skip/figures.h"
+#include "perf/skip/papers.h"
+#include "perf/skip/row.h"
+
+namespace slabcast::skipbench {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr CsvColumn kColumns[] = {{"table", "/table"},
+                                  {"volume", "/volume"},
+                                  {"edge", "/edge"},
+                                  {"family", "/family"},
+                                  {"mode", "/mode"},
+                                  {"finals_of", "/finalsOf"},
+                                  {"structure", "/structure"},
+                                  {"block_edge", "/blockEdge"},
+                                  {"bits", "/bits"},
+                                  {"partitions", "/partitions"},
+                                  {"initial_level", "/initialLevel"},
+                                  {"traversal", "/traversal"},
+                                  {"tf", "/tf"},
+                                  {"tf_name", "/tfName"},
+                                  {"planes", "/planes"},
+                                  {"layersPerPlane", "/layersPerPlane"},
+                                  {"tighten", "/tighten"},
+                                  {"order", "/order"},
+                                  {"search_ms", "/ms"},
+                                  {"speedup", "/speedup"},
+                                  {"build_ms", "/buildMs/median"},
+                                  {"build_ms_min", "/buildMs/min"},
+                                  {"build_ms_max", "/buildMs/max"},
+                                  {"gpu_build_ms", "/gpuBuildMs/median"},
+                                  {"gpu_build_ms_min", "/gpuBuildMs/min"},
+                                  {"gpu_build_ms_max", "/gpuBuildMs/max"},
+                                  {"gpu_refused", "/gpuRefused"},
+                                  {"build_of_ranges_ms", "/ofRangesMs/median"},
+                                  {"init_ms", "/initMs"},
+                                  {"update_ms", "/updateMs/median"},
+                                  {"gpu_bytes", "/gpuBytes"},
+                                  {"host_bytes", "/hostBytes"},
+                                  {"occupied_fraction", "/occupiedFraction"},
+                                  {"refused", "/refused"}};
+
+const char* name(Table table) {
+    constexpr const char* kNames[] = {"search",     "finals",     "frames",  "ratios", "work",
+                                      "structures", "partitions", "rebuild", "merge",  "sizes"};
+    return kNames[static_cast<int>(table)];
+}
+
+const char* name(Modality modality) {
+    return modality == Modality::Ct ? "ct" : modality == Modality::Mr ? "mr" : "unknown";
+}
+
+json timesOf(const std::vector<double>& ms) {
+    return toJson(summarise(ms));
+}
+
+/// Structure and parameters: no others than the structure's own.
+json fieldsOf(const SkipOptions& o) {
+    json row{{"structure", name(o.structure)}};
+    if (o.structure != SkipStructure::None) {
+        row["blockEdge"] = o.blockEdgeVoxels;
+    }
+    if (o.structure == SkipStructure::BitfieldOctree) {
+        row["bits"] = o.bits;
+    }
+    if (o.structure == SkipStructure::Partitioned) {
+        row["partitions"] = o.partitions;
+    }
+    if (isOctree(o.structure)) {
+        row["initialLevel"] = o.initialLevel;
+        row["traversal"] = name(o.traversal);
+    }
+    return row;
+}
+
+json fieldsOf(const FramePlan& plan) {
+    return {{"planes", plan.planes},
+            {"layersPerPlane", plan.layersPerPlane},
+            {"tighten", plan.tighten},
+            {"order", name(plan.order)},
+            {"variant", name(plan.variant)}};
+}
+
+json fieldsOf(const Cube& cube) {
+    return {{"edge", cube.edge}, {"volumeBytes", cube.volumeBytes}, {"codesMs", cube.codesMs}};
+}
+
+json fieldsOf(const Raced& raced) {
+    return {{"frameMs", timesOf(raced.samples)},
+            {"samples", raced.samples},
+            {"speedup", raced.speedup}};
+}
+
+json fieldsOf(const Memory& memory) {
+    return {{"gpuBytes", memory.gpuBytes}, {"hostBytes", memory.hostBytes}};
+}
+
+json fieldsOf(const Build& build) {
+    json row{{"gpuBuildMs", timesOf(build.gpuMs)}};
+    if (!build.gpuRefused.empty()) {
+        row["gpuRefused"] = build.gpuRefused;
+    }
+    if (!build.refused.empty()) {
+        row["refused"] = build.refused;
+        return row;
+    }
+    row.update({{"buildMs", timesOf(build.ms)},
+                {"updateMs", timesOf(build.updateMs)},
+                {"occupiedFraction", build.occupiedFraction}});
+    row.update(fieldsOf(build.memory));
+    return row;
+}
+
+json fieldsOf(const Partitions& partitions) {
+    if (!partitions.refused.empty()) {
+        return {{"refused", partitions.refused}};
+    }
+    json row = fieldsOf(partitions.memory);
+    row["initMs"] = partitions.initMs;
+    return row;
+}
+
+json fieldsOf(const Transfer& transfer) {
+    return {{"tf", transfer.key}, {"tfName", transfer.name}};
+}
+
+json fieldsOf(const Rebuild& rebuild) {
+    return {{"buildMs", timesOf(rebuild.ms)}, {"ofRangesMs", timesOf(rebuild.ofRangesMs)}};
+}
+
+json fieldsOf(const Merge& merge) {
+    return {{"updateMs", timesOf(merge.ms)},
+            {"speedup", merge.speedup},
+            {"speedupOfRanges", merge.speedupOfRanges}};
+}
+
+json fieldsOf(const Row& row) {
+    json all = fieldsOf(row.options);
+    all.update({{"table", name(row.table)}, {"volume", row.volume}});
+    const auto addIf = [&all](const auto& part) {
+        if (part) {
+            all.update(fieldsOf(*part));
+        }
+    };
+    addIf(row.cube);
+    addIf(row.plan);
+    addIf(row.raced);
+    addIf(row.build);
+    addIf(row.partitions);
+    addIf(row.transfer);
+    addIf(row.rebuild);
+    addIf(row.merge);
+    if (row.family != nullptr) {
+        all["family"] = row.family;
+    }
+    if (row.mode != nullptr) {
+        all["mode"] = row.mode;
+    }
+    if (row.finalsOf) {
+        all["finalsOf"] = name(*row.finalsOf);
+    }
+    if (row.leastMs) {
+        all["ms"] = *row.leastMs;
+    }
+    if (row.counters) {
+        all["counters"] = toJson(*row.counters);
+    }
+    return all;
+}
+
+json fieldsOf(const VolumeRecord& record) {
+    json volume = toJson(record.info);
+    volume.update({{"name", record.name},
+                   {"input", record.input},
+                   {"modality", name(record.info.modality)},
+                   {"transferFunction", record.transferFunction},
+                   {"texelFormat", name(record.texelFormat)},
+                   {"texelBytes", record.texelBytes},
+                   {"codesMs", record.codesMs}});
+    return volume;
+}
+
+template <class T>
+json orNull(const std::optional<T>& value) {
+    return value ? json(*value) : json();
+}
+
+/// What programs ask of a figure.
+json judgement(const Figure& figure) {
+    return {{"value", orNull(figure.value)},
+            {"goal", orNull(figure.goal)},
+            {"sense", name(figure.sense)},
+            {"reached", orNull(figure.reached())}};
+}
+
+json fieldsOf(const Figure& figure) {
+    json all = judgement(figure);
+    all.update({{"key", figure.key},
+                {"name", figure.name},
+                {"volume", figure.volume},
+                {"from", figure.from}});
+    return all;
+}
+
+template <class T>
+json listOf(std::span<const T> items) {
+    json list = json::array();
+    for (const T& item : items) {
+        list.push_back(fieldsOf(item));
+    }
+    return list;
+}
+
+/// Numbers alone, by the names of volumes and figures.
+json summaryOf(std::span<const Figure> figures) {
+    const Tally tally = tallyOf(figures);
+    json volumes = json::object();
+    for (const Figure& figure : figures) {
+        volumes[figure.volume][figure.key] = judgement(figure);
+    }
+    return {{"judged", tally.judged}, {"reached", tally.reached}, {"volumes", std::move(volumes)}};
+}
+
+json conditionsOf(const Desc& desc) {
+    const StageDesc& stage = desc.stage;
+    const OrbitCamera& camera = stage.camera;
+    const Settings& s = stage.settings;
+    return {{"size", {stage.size.x, stage.size.y}},
+            {"camera", {camera.azimuthDegrees, camera.elevationDegrees, camera.distanceRadii}},
+            {"fovDegrees", stage.fovDegrees},
+            {"layerSpacingVoxels", s.layerSpacingVoxels},
+            {"lattice", name(s.lattice)},
+            {"target", name(s.target)},
+            {"space", name(s.space)},
+            {"classification", name(s.classification)},
+            {"termination", s.termination ? json(*s.termination) : json("off")},
+            {"framesPerRowAtMost", desc.frames},
+            {"partitionBudgetBytes", stage.skip.memoryBudgetBytes},
+            {"sizes", desc.sizes},
+            {"quick", desc.quick}};
+}
+
+} // namespace
+
+Report reportOf(const Desc& desc, const Measured& measured, const RunInfo& info,
+                const gl::Caps& caps) {
+    json report = reportHeader(info, caps);
+    report["conditions"] = conditionsOf(desc);
+    report["volumes"] = listOf(measured.volumes);
+    report["figures"] = listOf(measured.figures);
+    report["summary"] = summaryOf(measured.figures);
+    report["papers"] = publishedTables();
+    report["rows"] = listOf(measured.rows);
+    return {.json = report.dump(2) + "\n",
+            .csv = csvOf(report["rows"], columnsOf({kColumns, kMeasuredColumns})),
+            .line = lineOf(measured.figures)};
+}
+
+} // namespace slabcast::skipbench

@@ -1,0 +1,43 @@
+#include "perf/skip/subject.h"
+
+#include <iterator>
+
+namespace slabcast::skipbench {
+
+namespace {
+
+constexpr int kUsualPartitions = 64; // as in Rauter et al. 2024, figure 4
+
+} // namespace
+
+void Bench::add(std::vector<Row> more) {
+    rows.insert(rows.end(), std::make_move_iterator(more.begin()),
+                std::make_move_iterator(more.end()));
+}
+
+std::vector<SkipOptions> usualStructures(const Desc& desc) {
+    std::vector<SkipOptions> all;
+    for (const SkipStructureInfo& info : skipStructures()) {
+        all.push_back({.structure = info.structure,
+                       .partitions = kUsualPartitions,
+                       .separateMinimum = info.structure == SkipStructure::Partitioned,
+                       .memoryBudgetBytes = desc.stage.skip.memoryBudgetBytes});
+    }
+    return all;
+}
+
+Result<std::vector<Subject>> subjectsOf(const Stage& stage,
+                                        std::span<const SkipOptions> structures) {
+    std::vector<Subject> subjects;
+    for (const SkipOptions& options : structures) {
+        Result<Scene> scene = stage.variation(stage.scene().look().tf, options);
+        if (scene) {
+            subjects.push_back({options, std::move(*scene)});
+        } else if (scene.error().code != ErrorCode::VolumeTooLarge) {
+            return tl::unexpected(scene.error());
+        }
+    }
+    return subjects;
+}
+
+} // namespace slabcast::skipbench
