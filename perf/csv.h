@@ -34,7 +34,7 @@ inline constexpr CsvColumn kMeasuredColumns[] = {{"frame_ms_median", "/frameMs/m
 std::vector<CsvColumn> columnsOf(std::initializer_list<std::span<const CsvColumn>> parts);
 
 /// A line per row, after the headings; empty where a value is null or missing. Text is quoted where
-/// it holds what separates cells or lines. Tested by: csv_test.cpp
+/// it holds what separates cells or lines. Tested by: error_grid_test.cpp
 std::string csvOf(const nlohmann::json& rows, std::span<const CsvColumn> columns);
 
 } // namespace slabcast

@@ -4,6 +4,8 @@
 
 namespace slabcast {
 
+inline constexpr int kFewestFrames = 3; // of a row: one slow frame is not the median
+
 /// Of several frames, ms.
 struct FrameTimes {
     double median = 0.0, min = 0.0, max = 0.0, p10 = 0.0, p90 = 0.0;

@@ -18,7 +18,7 @@ struct ReportPicture {
 };
 
 /// Box-filtered to an edge that suits a page. `picture` is of `size`.
-/// Tested by: report_pictures_test.cpp
+/// Tested by: heatmap_test.cpp
 ReportPicture thumbnail(glm::ivec2 size, const std::vector<glm::vec4>& picture);
 
 /// Where a report's files go: the program that measures has it, the library only names files in it,

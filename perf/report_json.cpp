@@ -26,6 +26,10 @@ json toJson(const VolumeInfo& info) {
             {"bytes", info.bytes}};
 }
 
+json toJson(const OrbitCamera& camera) {
+    return {camera.azimuthDegrees, camera.elevationDegrees, camera.distanceRadii};
+}
+
 json toJson(const FramePlan& plan) {
     json reasons = json::array();
     for (const ReasonText& reason : explained(plan)) {
@@ -47,6 +51,37 @@ json toJson(const FramePlan& plan) {
             {"space", name(plan.space)},
             {"drawsNothing", plan.drawsNothing},
             {"reasons", std::move(reasons)}};
+}
+
+json toJson(const BuiltSkip& skip) {
+    if (!skip.exists()) {
+        return nullptr;
+    }
+    const SkipOptions& o = skip.options;
+    json parameters = {{"block_edge", o.blockEdgeVoxels}};
+    const bool isBitfield = o.structure == SkipStructure::BitfieldOctree;
+    const bool isPartitioned = o.structure == SkipStructure::Partitioned;
+    if (isBitfield) {
+        parameters["bits"] = o.bits;
+    }
+    if (isPartitioned) {
+        parameters["partitions"] = o.partitions;
+    }
+    if (isBitfield || isPartitioned) {
+        parameters["separate_minimum"] = o.separateMinimum;
+        parameters["value_range"] = o.valueRange ? json(*o.valueRange) : json();
+    }
+    if (isOctree(o.structure)) {
+        parameters["initial_level"] = o.initialLevel;
+        parameters["traversal"] = name(o.traversal);
+    }
+    return {{"structure", name(o.structure)},
+            {"parameters", std::move(parameters)},
+            {"builder", skip.onGpu ? "gpu" : "cpu"},
+            {"build_ms", skip.buildMs},
+            {"gpu_bytes", gpuBytes(skip)},
+            {"host_bytes", hostBytes(skip)},
+            {"occupied_fraction", skip.occupiedFraction}};
 }
 
 json toJson(const FrameTimes& t) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -16,14 +17,17 @@ class Stage;
 // JSON fragments that reports share. Keys are stable: people plot them.
 nlohmann::json toJson(const gl::Caps& caps);
 nlohmann::json toJson(const VolumeInfo& info);
+nlohmann::json toJson(const OrbitCamera& camera); // azimuth and elevation in degrees, radii
 nlohmann::json toJson(const FramePlan& plan);
+nlohmann::json toJson(const BuiltSkip& skip);                // null where nothing was built
 nlohmann::json toJson(const FrameTimes& times);              // null of none
 nlohmann::json toJson(const Result<WorkCounters>& counters); // null where they cannot be had
 
 /// What a report says of the run itself, and only the program knows.
 struct RunInfo {
-    std::string command; // as it was typed
-    std::string commit;  // of the build
+    std::string command;                         // as it was typed
+    std::string commit;                          // of the build
+    std::function<std::int64_t()> peakHostBytes; // so far; may be empty where nobody knows
 };
 
 /// What was run, of which build, when and on what: what every report begins with.

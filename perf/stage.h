@@ -18,9 +18,6 @@ struct StageDevice {
     std::vector<TexelFormatTest> formats;
 };
 
-/// Where skip structures are built. Auto: on the GPU, unless that is the CPU in disguise.
-enum class SkipBuilder : std::uint8_t { Auto, Cpu, Gpu };
-
 /// A volume's look, where it is seen from and what its pictures are drawn into.
 struct StageDesc {
     glm::ivec2 size{1024, 1024}; // of the picture, both eyes together
@@ -41,7 +38,7 @@ struct StageDesc {
 
 /// A scene with its renderer and a framebuffer to draw into: what all measuring is done with. The
 /// context that it was opened in must be current at every call and outlive it.
-/// Tested by: stage_gl_test.cpp
+/// Tested by: cli_pictures_test.py
 class Stage {
 public:
     /// Chooses the texel format, checks that what this classification uploads fits before anything

@@ -11,7 +11,7 @@ struct Watcher {
     std::function<void(const std::string& line)> say;  // something that is not as it was asked for
 };
 
-/// Shows lines while a step goes on, and that it is done at its end. Tested by: watcher_test.cpp
+/// Shows lines while a step goes on, and that it is done at its end. Tested by: frame_times_test.cpp
 class ProgressLine {
 public:
     /// Borrows the watcher.

@@ -22,6 +22,7 @@ Result<FramePlan> decide(Stage& stage, const EditDesc& desc) {
     stage.show(std::move(*first));
     Result<FramePlan> decided = stage.decide(settings);
     FramePlan nothing;
+    nothing.look = stage.scene().lookGeneration();
     nothing.drawsNothing = true; // lets the stage's textures go, where ratios were measured
     return stage.renderer().prepare(stage.scene(), nothing, {}).and_then([&] { return decided; });
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "perf/frame_times.h"
 #include "perf/stage.h"
 
 namespace slabcast {
@@ -13,8 +14,6 @@ struct RunInfo;
 }
 
 namespace slabcast::skipbench {
-
-inline constexpr int kFewestFrames = 3; // of a row: one slow frame is not the median
 
 /// What is compared, and on what.
 struct Desc {

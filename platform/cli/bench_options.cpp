@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "perf/frame_times.h"
 #include "platform/cli/options.h"
 #include "platform/cli/scene_options.h"
 #include "platform/cli/skip_options.h"

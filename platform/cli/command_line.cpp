@@ -77,9 +77,9 @@ std::string renderCommandLine(const SceneOptions& scene, const Sampling& samplin
         .add("--skip", name(plan.skip))
         .addIf(!plan.tighten, "--tighten", "off");
     for (const SkipParameter& parameter : skipParameters()) {
-        const nlohmann::json value = parameter.value(scene.skip);
-        line.addIf(parameter.isOf(plan.skip) && value != parameter.value(usual.skip),
-                   parameter.flag, wordOf(value));
+        const std::string word = parameter.word(scene.skip);
+        line.addIf(parameter.isOf(plan.skip) && word != parameter.word(usual.skip), parameter.flag,
+                   word);
     }
     return line.text();
 }

@@ -5,8 +5,8 @@
 #include "perf/edit/replay.h"
 #include "platform/cli/commands.h"
 #include "platform/cli/edit_script.h"
-#include "platform/cli/new_folder.h"
 #include "platform/cli/open_stage.h"
+#include "platform/cli/report_files.h"
 #include "platform/cli/skip_options.h"
 #include "platform/cli/transfer_choice.h"
 #include "platform/json/json_checks.h"
@@ -67,11 +67,10 @@ Result<void> verdict(const EditReport& report, const std::string& folder) {
                                   report.wrongFrames, report.frames, folder));
 }
 
-Result<void> write(const NewFolder& folder, const EditReport& report) {
+Result<void> write(DiskFolder& folder, const EditReport& report) {
     return folder.write("edit.csv", report.csv)
         .and_then([&] { return folder.write("edit.json", report.json); })
-        .and_then(
-            [&] { return writePage(folder.path(), "edit_report.py", "edit.json and edit.csv"); });
+        .and_then([&] { return folder.makePage("edit_report.py", "edit.json and edit.csv"); });
 }
 
 } // namespace
@@ -85,7 +84,7 @@ Result<void> editCommand(const EditOptions& options, const std::string& command)
         return tl::unexpected(opened.error());
     }
     Stage& stage = opened->stage;
-    const NewFolder folder(options.outputFolder);
+    DiskFolder folder(options.outputFolder);
     return scriptOf(options, stage)
         .and_then([&](EditScript script) {
             return folder.make("edit.json").map([&] { return std::move(script); });

@@ -5,14 +5,16 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "core/draw/renderer.h"
 #include "core/plan/frame_plan.h"
+#include "perf/error/error_grid.h"
+#include "perf/heatmap.h"
 #include "perf/stage.h"
-#include "platform/cli/error_grid.h"
-#include "platform/cli/heatmap.h"
 #include "platform/cli/session.h"
+
+namespace CLI {
+class App;
+}
 
 namespace slabcast {
 
@@ -52,8 +54,6 @@ struct StabilityOptions {
     std::string family; // empty: all
     bool reduced = false;
 };
-
-inline constexpr int kFewestFrames = 3; // of a row: one slow frame is not the median
 
 struct ErrorOptions : SceneOptions {
     std::string outputFolder;

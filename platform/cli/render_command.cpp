@@ -1,18 +1,14 @@
-#include <algorithm>
-#include <numeric>
+#include <optional>
 
 #include <fmt/core.h>
 
-#include "perf/frame_times.h"
-#include "perf/report_json.h"
-#include "perf/stage.h"
+#include "perf/error/error_table_json.h"
+#include "perf/frame/frame_report.h"
 #include "platform/cli/commands.h"
-#include "platform/cli/commit.h"
 #include "platform/cli/error_table_file.h"
 #include "platform/cli/open_stage.h"
 #include "platform/cli/picture_file.h"
-#include "platform/cli/progress.h"
-#include "platform/cli/reference_pictures.h"
+#include "platform/cli/report_files.h"
 #include "platform/cli/skip_options.h"
 #include "platform/io/atomic_file.h"
 
@@ -41,9 +37,7 @@ Result<Settings> settingsFor(Stage& stage, const RenderOptions& options) {
     if (!options.targetError) {
         return options.settings;
     }
-    const Result<std::filesystem::path> path = errorTablePath(stage.caps());
-    const Result<std::vector<MeasuredError>> table =
-        path ? readErrorTable(*path) : tl::unexpected(path.error());
+    const Result<std::vector<MeasuredError>> table = readErrorTable(stage.caps());
     const Result<ErrorChoice> choice =
         table ? cheapestWithin(*options.targetError, labelOf(stage), *table)
               : tl::unexpected(table.error());
@@ -66,107 +60,10 @@ Result<Settings> settingsFor(Stage& stage, const RenderOptions& options) {
     return withSampling(options.settings, choice->sampling, stage.scene().facts());
 }
 
-struct Turn {
-    std::vector<double> frameMs;
-    std::vector<glm::vec4> firstPicture;
-};
-
-/// The volume turned once around.
-Result<Turn> drawTurn(Stage& stage, const FramePlan& plan, int frames, bool encoded) {
-    if (frames > 1) {
-        (void)stage.drawTimed(
-            plan, 0.0); // the first frame after a compile also pays for the driver's own work
-    }
-    Turn turn;
-    Progress progress;
-    for (int k = 0; k < frames; ++k) {
-        progress.show(fmt::format("frame {} of {}", k + 1, frames));
-        const Result<double> ms = stage.drawTimed(plan, 360.0 * k / frames);
-        if (!ms) {
-            return tl::unexpected(ms.error());
-        }
-        turn.frameMs.push_back(*ms);
-        if (k == 0) {
-            turn.firstPicture = stage.picture(encoded);
-        }
-    }
-    return turn;
-}
-
-/// How far the first frame is from the exact picture.
-Result<PictureDifference> verify(Stage& stage, const FramePlan& plan, glm::ivec2 size) {
-    const Result<std::vector<glm::dvec4>> picture = stage.drawOnNothing(plan);
-    if (!picture) {
-        return tl::unexpected(picture.error());
-    }
-    Progress progress;
-    const std::vector<glm::dvec4> exact = continuousPicture(stage, size, [&progress](double done) {
-        progress.show(fmt::format("integrating the exact picture: {:.0f} %", 100.0 * done));
-    });
-    return difference(*picture, exact, plan.space);
-}
-
 void print(const PictureDifference& d) {
     fmt::print("error: RMSE {:.4g}, PSNR {:.4g} dB, at most {:.4g}; CIEDE2000 {:.3g} on average, "
                "{:.3g} at the 99.9th percentile\n",
                d.rmse, d.psnr, d.max, d.meanDeltaE, d.p999DeltaE);
-}
-
-/// The first frame's cost, pixel by pixel.
-struct CostPicture {
-    std::vector<glm::vec4> pixels; // top row first
-    nlohmann::json stats;
-};
-
-Result<CostPicture> drawCosts(Stage& stage, const FramePlan& plan, const RenderOptions& options,
-                              bool encoded) {
-    const HeatmapQuantity quantity = *options.heatmap;
-    const Result<std::vector<PixelWork>> work = stage.workPerPixel(plan);
-    if (!work) {
-        return tl::unexpected(work.error());
-    }
-    std::vector<double> costs(work->size());
-    std::transform(work->begin(), work->end(), costs.begin(),
-                   [=](const PixelWork& pixel) { return costOf(pixel, quantity); });
-    const double maximum = maximumOf(options.heatmapScale, costs, plan.lattice.total);
-    CostPicture picture{drawHeatmap(options.size, costs, quantity, maximum),
-                        {{"quantity", name(quantity)},
-                         {"maximum", maximum},
-                         {"sum", std::accumulate(costs.begin(), costs.end(), 0.0)}}};
-    if (!encoded) {
-        for (glm::vec4& pixel : picture.pixels) {
-            pixel = glm::vec4(glm::vec3(linearFromSrgb(glm::dvec3(pixel))), pixel.a);
-        }
-    }
-    return picture;
-}
-
-/// What was built to skip by, and what of it the plan has a use for.
-nlohmann::json skipStats(const BuiltSkip& skip, const FramePlan& plan) {
-    nlohmann::json stats = toJson(skip);
-    if (!stats.is_null()) {
-        stats["skips"] = plan.skip != SkipStructure::None;
-        stats["tightens"] = plan.tighten;
-    }
-    return stats;
-}
-
-nlohmann::json stats(Stage& stage, const FramePlan& plan, const std::vector<double>& times) {
-    const GpuMemory gpu = stage.renderer().gpuMemory();
-    return {{"device", toJson(stage.caps())},
-            {"commit", commit()},
-            {"volume", toJson(stage.info())},
-            {"plan", toJson(plan)},
-            {"skip", skipStats(stage.scene().skip(), plan)},
-            {"frame_ms", toJson(summarise(times))},
-            {"counters", toJson(stage.countWork(plan))},
-            {"compile_ms", stage.renderer().compileMs(plan.variant)},
-            {"quantisation_error", stage.scene().texels().maxQuantisationError},
-            {"memory",
-             {{"host_peak_bytes", peakHostBytes()},
-              {"gpu_volume_bytes", gpu.volumeBytes},
-              {"gpu_skip_bytes", gpu.skipBytes},
-              {"gpu_other_bytes", gpu.otherBytes}}}};
 }
 
 /// Both outputs are known to be writable before any work is done, so that neither is left without
@@ -187,6 +84,58 @@ Result<bool> checkOutputs(const RenderOptions& options) {
     return pictureIsEncoded(options.output);
 }
 
+/// What is asked for of a plan.
+struct Drawing {
+    Turn turn;
+    std::optional<CostPicture> costs;
+    std::optional<PictureDifference> error;
+};
+
+Result<Drawing> drawAll(Stage& stage, const FramePlan& plan, const RenderOptions& options,
+                        bool encoded) {
+    Drawing drawing;
+    Result<Turn> turn = drawTurn(stage, plan, options.frames, encoded);
+    if (!turn) {
+        return tl::unexpected(turn.error());
+    }
+    drawing.turn = std::move(*turn);
+    if (options.heatmap) {
+        Result<CostPicture> costs =
+            drawCosts(stage, plan, *options.heatmap, options.heatmapScale, encoded);
+        if (!costs) {
+            return tl::unexpected(costs.error());
+        }
+        drawing.costs = std::move(*costs);
+    }
+    if (options.verify) {
+        const Result<PictureDifference> error = errorOf(stage, plan);
+        if (!error) {
+            return tl::unexpected(error.error());
+        }
+        drawing.error = *error;
+    }
+    return drawing;
+}
+
+Result<void> writeAll(Stage& stage, const FramePlan& plan, const RenderOptions& options,
+                      const Drawing& drawing) {
+    const auto& [turn, costs, error] = drawing;
+    if (Result<void> saved =
+            savePicture(options.output, options.size, costs ? costs->pixels : turn.firstPicture,
+                        costs || options.background.has_value());
+        !saved) {
+        return saved;
+    }
+    if (error) {
+        print(*error);
+    }
+    if (options.statsFile.empty()) {
+        return {};
+    }
+    const FrameFindings findings{turn.frameMs, error, costs ? &*costs : nullptr};
+    return writeFileAtomically(options.statsFile, frameReport(stage, plan, findings, runOf("")));
+}
+
 } // namespace
 
 Result<void> renderCommand(const RenderOptions& given) {
@@ -200,61 +149,21 @@ Result<void> renderCommand(const RenderOptions& given) {
     if (!opened) {
         return tl::unexpected(opened.error());
     }
-    Stage* const stage = &opened->stage;
-    const Result<Settings> settings = settingsFor(*stage, options);
-    if (!settings) {
-        return tl::unexpected(settings.error());
-    }
-    const Result<FramePlan> plan = stage->decide(*settings);
+    Stage& stage = opened->stage;
+    const Result<FramePlan> plan =
+        settingsFor(stage, options).and_then([&](const Settings& s) { return stage.decide(s); });
     if (!plan) {
         return tl::unexpected(plan.error());
     }
-    if (Result<void> ready = stage->prepare(*plan); !ready) {
+    if (Result<void> ready = stage.prepare(*plan); !ready) {
         return ready;
     }
     if (options.explain) {
-        explain(*plan, stage->info(), stage->scene());
+        explain(*plan, stage.info(), stage.scene());
     }
-    const Result<Turn> turn = drawTurn(*stage, *plan, options.frames, *encoded);
-    if (!turn) {
-        return tl::unexpected(turn.error());
-    }
-    std::optional<CostPicture> costs;
-    if (options.heatmap) {
-        Result<CostPicture> drawn = drawCosts(*stage, *plan, options, *encoded);
-        if (!drawn) {
-            return tl::unexpected(drawn.error());
-        }
-        costs = std::move(*drawn);
-    }
-    std::optional<PictureDifference> error;
-    if (options.verify) {
-        const Result<PictureDifference> found = verify(*stage, *plan, options.size);
-        if (!found) {
-            return tl::unexpected(found.error());
-        }
-        error = *found;
-    }
-    if (Result<void> saved =
-            savePicture(options.output, options.size, costs ? costs->pixels : turn->firstPicture,
-                        costs || options.background.has_value());
-        !saved) {
-        return saved;
-    }
-    if (error) {
-        print(*error);
-    }
-    if (options.statsFile.empty()) {
-        return {};
-    }
-    nlohmann::json content = stats(*stage, *plan, turn->frameMs);
-    if (error) {
-        content["error"] = toJson(*error);
-    }
-    if (costs) {
-        content["heatmap"] = costs->stats;
-    }
-    return writeFileAtomically(options.statsFile, content.dump(2) + "\n");
+    return drawAll(stage, *plan, options, *encoded).and_then([&](const Drawing& drawing) {
+        return writeAll(stage, *plan, options, drawing);
+    });
 }
 
 } // namespace slabcast

@@ -2,6 +2,8 @@
 #include "perf/csv.h"
 #include "perf/report_folder.h"
 
+#include <fstream>
+#include <iterator>
 #include <vector>
 
 #include <fmt/core.h>
@@ -10,6 +12,9 @@
 #include <unistd.h>
 
 #include "platform/cli/commit.h"
+#include "platform/cli/picture_file.h"
+#include "platform/cli/session.h"
+#include "platform/io/atomic_file.h"
 
 namespace slabcast {
 
@@ -38,34 +43,67 @@ bool run(std::vector<std::string> words) {
 
 } // namespace
 
-Result<void> makeReportFolder(const fs::path& folder) {
+DiskFolder::DiskFolder(fs::path path, std::string inner)
+    : path_(std::move(path)), inner_(std::move(inner)) {
+    std::error_code ignored; // what cannot be asked after is not this program's to remove
+    made_ = fs::status(path_, ignored).type() == fs::file_type::not_found;
+}
+
+DiskFolder::~DiskFolder() {
+    std::error_code ignored; // where it is not empty it stays
+    if (made_) {
+        fs::remove(path_ / inner_, ignored);
+        fs::remove(path_, ignored);
+    }
+}
+
+Result<void> DiskFolder::make(const std::string& file) const {
     std::error_code error;
-    fs::create_directories(folder, error);
+    fs::create_directories(path_ / inner_, error);
     if (error) {
+        return fail(ErrorCode::FileUnwritable, path_.string() + ": cannot make this folder (" +
+                                                   error.message() + "): give another to --out");
+    }
+    return checkWritable(path_ / file);
+}
+
+Result<void> DiskFolder::write(const std::string& file, std::string_view content) {
+    return writeFileAtomically(path_ / file, content);
+}
+
+Result<void> DiskFolder::savePicture(const std::string& file, const ReportPicture& picture) {
+    return slabcast::savePicture(path_ / file, picture.size, picture.pixels, true);
+}
+
+bool DiskFolder::has(const std::string& file) const {
+    std::error_code ignored; // what cannot be asked after is not there
+    return fs::exists(path_ / file, ignored);
+}
+
+std::optional<std::string> DiskFolder::read(const std::string& file) const {
+    std::ifstream in(path_ / file, std::ios::binary);
+    if (!in) {
+        return std::nullopt;
+    }
+    return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+Result<void> DiskFolder::makePage(const std::string& script, const std::string& written) const {
+    const fs::path installed =
+        fs::read_symlink("/proc/self/exe").parent_path() / "../share/slabcast/perf" / script;
+    const fs::path path =
+        fs::exists(installed) ? installed : fs::path(SLABCAST_PERF_FOLDER) / script;
+    if (!run({"/usr/bin/python3", path.string(), path_.string()})) {
         return fail(ErrorCode::FileUnwritable,
-                    fmt::format("{}: cannot make this folder ({}): give another to --out",
-                                folder.string(), error.message()));
+                    fmt::format("{0}: {1} are written, report.html is not: install "
+                                "python3-matplotlib, then run {2} {0}",
+                                path_.string(), written, path.string()));
     }
     return {};
 }
 
 RunInfo runOf(const std::string& command) {
-    return {command, commit()};
-}
-
-Result<void> writePage(const fs::path& folder, const std::string& script,
-                       const std::string& written) {
-    const fs::path installed =
-        fs::read_symlink("/proc/self/exe").parent_path() / "../share/slabcast/perf" / script;
-    const fs::path path =
-        fs::exists(installed) ? installed : fs::path(SLABCAST_PERF_FOLDER) / script;
-    if (!run({"/usr/bin/python3", path.string(), folder.string()})) {
-        return fail(ErrorCode::FileUnwritable,
-                    fmt::format("{0}: {1} are written, report.html is not: install "
-                                "python3-matplotlib, then run {2} {0}",
-                                folder.string(), written, path.string()));
-    }
-    return {};
+    return {command, commit(), peakHostBytes};
 }
 
 } // namespace slabcast

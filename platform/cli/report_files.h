@@ -3,21 +3,42 @@
 #include <filesystem>
 #include <string>
 
+#include "perf/report_folder.h"
 #include "perf/report_json.h"
 
 namespace slabcast {
 
-// What commands that measure into a folder have in common.
+/// A report's folder on disk: made before long work, gone again, if it was made here, where that
+/// work fails before anything is written.
+class DiskFolder : public ReportFolder {
+public:
+    /// With a folder of this name in it, where one is named.
+    explicit DiskFolder(std::filesystem::path path, std::string inner = {});
+    DiskFolder(const DiskFolder&) = delete;
+    DiskFolder& operator=(const DiskFolder&) = delete;
+    ~DiskFolder() override;
 
-/// Makes the folder, and those above it. Fails: FileUnwritable, naming --out.
-Result<void> makeReportFolder(const std::filesystem::path& folder);
+    /// Makes it and those above it. Fails: FileUnwritable, naming --out where it cannot be made;
+    /// also where `file` could not be written in it.
+    Result<void> make(const std::string& file) const;
+
+    std::string name() const override { return path_.string(); }
+    Result<void> write(const std::string& file, std::string_view content) override;
+    Result<void> savePicture(const std::string& file, const ReportPicture& picture) override;
+    bool has(const std::string& file) const override;
+    std::optional<std::string> read(const std::string& file) const override;
+
+    /// Makes report.html from the JSON that is there, by a script of perf/pages, so that it can be
+    /// made again. Fails: FileUnwritable, saying that `written` are there and how to make the page.
+    Result<void> makePage(const std::string& script, const std::string& written) const;
+
+private:
+    std::filesystem::path path_;
+    std::string inner_;
+    bool made_; // nothing was there before
+};
 
 /// This run, of the command as it was typed.
 RunInfo runOf(const std::string& command);
-
-/// The page is made by a script from the JSON, so that it can be made again: `script` is its name
-/// in perf/. Fails: FileUnwritable, saying that `written` are there and how to make the page.
-Result<void> writePage(const std::filesystem::path& folder, const std::string& script,
-                       const std::string& written);
 
 } // namespace slabcast

@@ -12,8 +12,6 @@ namespace slabcast {
 
 namespace {
 
-using nlohmann::json;
-
 bool isBuilt(SkipStructure structure) {
     return structure != SkipStructure::None;
 }
@@ -32,19 +30,20 @@ bool servesEdits(SkipStructure structure) {
 }
 
 constexpr SkipParameter kParameters[] = {
-    {"--skip-block", "block_edge", isBuilt,
-     [](const SkipOptions& o) -> json { return o.blockEdgeVoxels; }},
-    {"--skip-bits", "bits", isBitfield, [](const SkipOptions& o) -> json { return o.bits; }},
-    {"--partitions", "partitions", isPartitioned,
-     [](const SkipOptions& o) -> json { return o.partitions; }},
-    {"--separate-minimum", "separate_minimum", hasBins,
-     [](const SkipOptions& o) -> json { return o.separateMinimum; }},
-    {"--value-range", "value_range", hasBins,
-     [](const SkipOptions& o) -> json { return o.valueRange ? json(*o.valueRange) : json(); }},
-    {"--initial-level", "initial_level", isOctree,
-     [](const SkipOptions& o) -> json { return o.initialLevel; }},
-    {"--traversal", "traversal", isOctree,
-     [](const SkipOptions& o) -> json { return name(o.traversal); }},
+    {"--skip-block", isBuilt,
+     [](const SkipOptions& o) { return std::to_string(o.blockEdgeVoxels); }},
+    {"--skip-bits", isBitfield, [](const SkipOptions& o) { return std::to_string(o.bits); }},
+    {"--partitions", isPartitioned,
+     [](const SkipOptions& o) { return std::to_string(o.partitions); }},
+    {"--separate-minimum", hasBins,
+     [](const SkipOptions& o) { return wordFor(onOffWords(), o.separateMinimum); }},
+    {"--value-range", hasBins,
+     [](const SkipOptions& o) {
+         return o.valueRange ? fmt::format("{},{}", (*o.valueRange)[0], (*o.valueRange)[1]) : "";
+     }},
+    {"--initial-level", isOctree,
+     [](const SkipOptions& o) { return std::to_string(o.initialLevel); }},
+    {"--traversal", isOctree, [](const SkipOptions& o) { return std::string(name(o.traversal)); }},
 };
 
 /// Nothing where it cannot be read.
@@ -215,13 +214,6 @@ std::span<const SkipParameter> skipParameters() {
     return kParameters;
 }
 
-std::string wordOf(const json& value) {
-    return value.is_string()    ? value.get<std::string>()
-           : value.is_boolean() ? wordFor(onOffWords(), value.get<bool>())
-           : value.is_array() ? fmt::format("{}", fmt::join(value.get<std::vector<double>>(), ","))
-                              : value.dump();
-}
-
 LiveOptions liveOptions(const SceneOptions& o) {
     LiveOptions live;
     const auto asked = [&](SkipStructure structure) {
@@ -249,9 +241,9 @@ void bindLiveSkipping(CLI::App& command, SceneOptions& o) {
 std::string describe(const BuiltSkip& skip) {
     std::string parameters;
     for (const SkipParameter& parameter : kParameters) {
-        const json value = parameter.value(skip.options);
-        if (parameter.isOf(skip.options.structure) && !value.is_null()) {
-            parameters += fmt::format(" {} {}", parameter.flag, wordOf(value));
+        const std::string word = parameter.word(skip.options);
+        if (parameter.isOf(skip.options.structure) && !word.empty()) {
+            parameters += fmt::format(" {} {}", parameter.flag, word);
         }
     }
     constexpr double kMib = 1048576.0;
@@ -261,25 +253,6 @@ std::string describe(const BuiltSkip& skip) {
                        skip.buildMs, static_cast<double>(gpuBytes(skip)) / kMib,
                        skip.octree ? "at most " : "", 100.0 * skip.occupiedFraction,
                        skip.octree ? "leaves" : "blocks");
-}
-
-json toJson(const BuiltSkip& skip) {
-    if (!skip.exists()) {
-        return nullptr;
-    }
-    json parameters = json::object();
-    for (const SkipParameter& parameter : kParameters) {
-        if (parameter.isOf(skip.options.structure)) {
-            parameters[parameter.key] = parameter.value(skip.options);
-        }
-    }
-    return {{"structure", name(skip.options.structure)},
-            {"parameters", std::move(parameters)},
-            {"builder", skip.onGpu ? "gpu" : "cpu"},
-            {"build_ms", skip.buildMs},
-            {"gpu_bytes", gpuBytes(skip)},
-            {"host_bytes", hostBytes(skip)},
-            {"occupied_fraction", skip.occupiedFraction}};
 }
 
 } // namespace slabcast

@@ -2,9 +2,9 @@
 
 #include "perf/skip/bench.h"
 #include "platform/cli/commands.h"
-#include "platform/cli/new_folder.h"
 #include "platform/cli/open_stage.h"
 #include "platform/cli/progress.h"
+#include "platform/cli/report_files.h"
 #include "platform/json/transfer_json.h"
 
 namespace slabcast {
@@ -56,12 +56,11 @@ skipbench::Host hostOf(const SkipbenchOptions& options, const Session& session) 
     return {.open = open, .otherTransfer = otherPreset, .watcher = terminal()};
 }
 
-Result<void> write(const NewFolder& folder, const skipbench::Report& report) {
+Result<void> write(DiskFolder& folder, const skipbench::Report& report) {
     return folder.write("skipbench.csv", report.csv)
         .and_then([&] { return folder.write("skipbench.json", report.json); })
         .and_then([&] {
-            return writePage(folder.path(), "skipbench_report.py",
-                             "skipbench.json and skipbench.csv");
+            return folder.makePage("skipbench_report.py", "skipbench.json and skipbench.csv");
         })
         .map([&] { fmt::print("{}\n", report.line); });
 }
@@ -69,7 +68,7 @@ Result<void> write(const NewFolder& folder, const skipbench::Report& report) {
 } // namespace
 
 Result<void> skipbenchCommand(const SkipbenchOptions& options, const std::string& command) {
-    const NewFolder folder(options.outputFolder);
+    DiskFolder folder(options.outputFolder);
     const Result<Session> session =
         checkVolumes(options).and_then([&] { return folder.make("skipbench.json"); }).and_then([] {
             return openSession();

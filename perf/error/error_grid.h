@@ -1,12 +1,10 @@
 #pragma once
 
-#include <algorithm>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "perf/error/error_table.h"
 
@@ -23,7 +21,7 @@ struct GridAxes {
 };
 
 /// `given` with defaults where it is empty, fewer of them if `quick`; spacings from coarse to fine,
-/// ray casting before other numbers of layers per plane.
+/// ray casting before other numbers of layers per plane. Tested by: error_grid_test.cpp
 GridAxes completed(GridAxes given, bool quick);
 
 /// Every combination; by classification, jitter and spacing first, which a sampled picture in
@@ -31,7 +29,7 @@ GridAxes completed(GridAxes given, bool quick);
 /// combined with one number of layers per plane only.
 std::vector<Sampling> gridOf(const GridAxes& axes, bool quick);
 
-/// Names a row: unique in a grid, fit for a file's name.
+/// Names a row: unique in a grid, fit for a file's name. Tested by: error_grid_test.cpp
 std::string idOf(const Sampling& sampling);
 
 nlohmann::json toJson(const GridAxes& axes);
@@ -42,32 +40,14 @@ nlohmann::json toJson(const Sampling& sampling);
 /// Adds `order` and `coarser` to every row: for each part of its error the exponent p with which
 /// the error went as spacing^p from the family's next coarser row to this one. Null where there is
 /// none, and where an error is at its floor: below 1e-9 (the references' own accuracy), or in the
-/// total less than half due to sampling.
+/// total less than half due to sampling. Tested by: error_grid_test.cpp
 void addOrders(nlohmann::json& rows);
 
 /// Indices of the rows that no other beats both in cost and in total RMSE, cheapest first; rows
-/// without a cost are left out. `cost`: a function of a row to an optional double.
-template <class Cost>
-std::vector<std::size_t> frontOf(const nlohmann::json& rows, Cost cost);
+/// without a cost are left out.
+std::vector<std::size_t> frontOf(const nlohmann::json& rows,
+                                 std::optional<double> (*cost)(const nlohmann::json& row));
 
 double totalRmse(const nlohmann::json& row);
-
-template <class Cost>
-std::vector<std::size_t> frontOf(const nlohmann::json& rows, Cost cost) {
-    std::vector<std::pair<std::pair<double, double>, std::size_t>> ranked;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (const std::optional<double> c = cost(rows[i])) {
-            ranked.push_back({{*c, totalRmse(rows[i])}, i});
-        }
-    }
-    std::sort(ranked.begin(), ranked.end());
-    std::vector<std::size_t> front;
-    for (const auto& [rank, index] : ranked) {
-        if (front.empty() || rank.second < totalRmse(rows[front.back()])) {
-            front.push_back(index);
-        }
-    }
-    return front;
-}
 
 } // namespace slabcast

@@ -1,13 +1,14 @@
-#include "platform/cli/heatmap.h"
+#include "perf/heatmap.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
 
-#include <fmt/format.h>
+#include <string>
 
 #include "core/transfer/transfer_function.h"
+#include "perf/number.h"
 
 namespace slabcast {
 
@@ -111,9 +112,8 @@ void drawScale(Canvas& canvas, glm::ivec2 size, HeatmapQuantity quantity, double
     const int dot = std::max(1, std::min(size.x, size.y) / 256);
     const int margin = 4 * dot;
     const int height = kGlyphHeight * dot;
-    const std::string title = fmt::format("{} per pixel", name(quantity));
-    const std::string most =
-        maximum < 100.0 ? fmt::format("{:.3g}", maximum) : fmt::format("{:.0f}", maximum);
+    const std::string title = std::string(name(quantity)) + " per pixel";
+    const std::string most = maximum < 100.0 ? number(maximum) : fixed(maximum, 0);
     const int top = size.y - height - margin;
     canvas.fill({0, top - margin}, {size.x, height + 2 * margin}, kBehindScale);
     const bool roomForTitle = widthOf(title, dot) < size.x / 2;

@@ -1,9 +1,11 @@
-#include "platform/cli/error_grid.h"
+#include "perf/error/error_grid.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "perf/number.h"
 
 namespace slabcast {
 
@@ -13,6 +15,7 @@ using nlohmann::json;
 
 constexpr const char* kParts[] = {"total", "sampling", "table", "gpu"};
 constexpr double kFloor = 1e-9;
+constexpr int kEnough = 15; // digits that tell two settings apart
 /// Ray casting: where leaving a ray early shows most, and what is drawn in the least time.
 constexpr int kVariedLayersPerPlane = 0;
 
@@ -116,10 +119,10 @@ std::vector<Sampling> gridOf(const GridAxes& axes, bool quick) {
 }
 
 std::string idOf(const Sampling& s) {
-    return fmt::format("{}_{}_s{}_l{}_t{}{}", name(s.classification), name(s.target),
-                       s.layerSpacingVoxels, s.layersPerPlane,
-                       s.termination ? fmt::format("{}", *s.termination) : "off",
-                       s.jitter ? "_jitter" : "");
+    const std::string termination = s.termination ? number(*s.termination, kEnough) : "off";
+    return std::string(name(s.classification)) + "_" + name(s.target) + "_s" +
+           number(s.layerSpacingVoxels, kEnough) + "_l" + std::to_string(s.layersPerPlane) + "_t" +
+           termination + (s.jitter ? "_jitter" : "");
 }
 
 json toJson(const std::optional<double>& termination) {
@@ -160,6 +163,23 @@ void addOrders(json& rows) {
         row["order"] = std::move(order);
         row["coarser"] = coarser == nullptr ? json() : coarser->at("id");
     }
+}
+
+std::vector<std::size_t> frontOf(const json& rows, std::optional<double> (*cost)(const json&)) {
+    std::vector<std::pair<std::pair<double, double>, std::size_t>> ranked;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (const std::optional<double> c = cost(rows[i])) {
+            ranked.push_back({{*c, totalRmse(rows[i])}, i});
+        }
+    }
+    std::sort(ranked.begin(), ranked.end());
+    std::vector<std::size_t> front;
+    for (const auto& [rank, index] : ranked) {
+        if (front.empty() || rank.second < totalRmse(rows[front.back()])) {
+            front.push_back(index);
+        }
+    }
+    return front;
 }
 
 double totalRmse(const json& row) {

@@ -1,18 +1,12 @@
-#include "platform/cli/error_rows.h"
+#include "perf/error/error_rows.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
-#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
-#include "perf/csv.h"
-#include "perf/frame_times.h"
-#include "perf/report_folder.h"
-#include "perf/report_json.h"
-#include "platform/cli/command_line.h"
-#include "platform/cli/error_grid.h"
-#include "platform/cli/picture_file.h"
-#include "platform/cli/reference_pictures.h"
-#include "platform/cli/report_files.h"
+#include "perf/error/reference_pictures.h"
 
 namespace slabcast {
 
@@ -35,7 +29,43 @@ json planJson(const FramePlan& plan) {
     return all;
 }
 
-} // namespace
+/// Measures a grid's rows, or takes them from the store. Borrows all.
+class ErrorRows {
+public:
+    ErrorRows(Stage& stage, const ErrorDesc& desc, ErrorStore& store, ReportFolder& folder,
+              json& leftOut)
+        : stage_(stage), desc_(desc), store_(store), folder_(folder), leftOut_(leftOut),
+          reference_(store.reference()->pixels), progress_(stage.watcher()) {}
+
+    Result<json> measure(const std::vector<Sampling>& grid);
+
+private:
+    /// Sampled in float64, once for all rows that take the same samples.
+    struct Sampled {
+        Lattice lattice;
+        Classification classification = Classification::Post;
+        std::vector<glm::dvec4> withTable;
+        json sampling, table; // the parts of the error
+    };
+
+    /// False where it cannot be had: it is left out from then on.
+    bool classify(Classification classification);
+    Result<json> measureRow(const Sampling& sampling, const FramePlan& plan);
+    const Sampled& sampledFor(const FramePlan& plan);
+    Result<FrameTimes> time(const FramePlan& plan);
+    json countersOf(const FramePlan& plan);
+    Result<json> savePictures(const std::string& id, const std::vector<glm::dvec4>& picture);
+
+    Stage& stage_;
+    const ErrorDesc& desc_;
+    ErrorStore& store_;
+    ReportFolder& folder_;
+    json& leftOut_;
+    const std::vector<glm::dvec4>& reference_;
+    ProgressLine progress_;
+    std::optional<Sampled> sampled_;
+    std::vector<std::pair<FramePlan, json>> counted_; // work does not depend on the target
+};
 
 Result<json> ErrorRows::measure(const std::vector<Sampling>& grid) {
     json rows = json::array();
@@ -46,8 +76,8 @@ Result<json> ErrorRows::measure(const std::vector<Sampling>& grid) {
             continue;
         }
         const SceneFacts facts = stage_.scene().facts();
-        const Result<FramePlan> plan = slabcast::plan(
-            facts, withSampling(options_.settings, sampling, facts), stage_.caps(), {});
+        const Result<FramePlan> plan =
+            stage_.plan(withSampling(stage_.desc().settings, sampling, facts));
         if (!plan) {
             return tl::unexpected(plan.error());
         }
@@ -57,7 +87,8 @@ Result<json> ErrorRows::measure(const std::vector<Sampling>& grid) {
         plans.push_back(*plan);
         const std::string id = idOf(sampling);
         if (store_.row(id) == nullptr) {
-            progress_.show(fmt::format("row {} of {}: {}", i + 1, grid.size(), describe(sampling)));
+            progress_.show("row " + std::to_string(i + 1) + " of " + std::to_string(grid.size()) +
+                           ": " + describe(sampling));
             Result<json> row = measureRow(sampling, *plan);
             if (!row) {
                 return row;
@@ -119,7 +150,7 @@ Result<json> ErrorRows::measureRow(const Sampling& sampling, const FramePlan& pl
                 {"error", std::move(error)},
                 {"frameMs", toJson(*times)},
                 {"counters", countersOf(plan)},
-                {"command", renderCommandLine(options_, sampling, plan, id + ".png")},
+                {"command", desc_.commandOf ? desc_.commandOf(sampling, plan, id + ".png") : ""},
                 {"pictures", std::move(*pictures)}});
     return row;
 }
@@ -129,7 +160,7 @@ const ErrorRows::Sampled& ErrorRows::sampledFor(const FramePlan& plan) {
     if (!sampled_ || sampled_->lattice != plan.lattice ||
         sampled_->classification != classification) {
         const auto pictureOf = [&](TransferKind kind) {
-            return discretePicture(stage_, options_.size, plan.lattice, kind);
+            return discretePicture(stage_, plan.lattice, kind);
         };
         const std::vector<glm::dvec4> continuous = pictureOf(TransferKind::Continuous);
         sampled_ = {plan.lattice, classification, pictureOf(TransferKind::Table), {}, {}};
@@ -140,8 +171,8 @@ const ErrorRows::Sampled& ErrorRows::sampledFor(const FramePlan& plan) {
 }
 
 Result<FrameTimes> ErrorRows::time(const FramePlan& plan) {
-    const double enoughMs = options_.quick ? kEnoughQuickMs : kEnoughMs;
-    const auto frames = static_cast<std::size_t>(options_.frames);
+    const double enoughMs = desc_.quick ? kEnoughQuickMs : kEnoughMs;
+    const auto frames = static_cast<std::size_t>(desc_.frames);
     std::vector<double> times;
     for (double spentMs = 0.0; times.size() < std::size_t{kFewestFrames} ||
                                (times.size() < frames && spentMs < enoughMs);) {
@@ -168,17 +199,16 @@ json ErrorRows::countersOf(const FramePlan& plan) {
 
 Result<json> ErrorRows::savePictures(const std::string& id,
                                      const std::vector<glm::dvec4>& picture) {
-    const AmplifiedDifference apart = amplified(picture, reference_, options_.size);
-    const std::string thumbnailFile = fmt::format("pictures/{}.png", id);
-    const std::string differenceFile = fmt::format("pictures/{}_difference.png", id);
+    const AmplifiedDifference apart = amplified(picture, reference_, stage_.desc().size);
+    const std::string thumbnailFile = std::string(kErrorPictures) + "/" + id + ".png";
+    const std::string differenceFile = std::string(kErrorPictures) + "/" + id + "_difference.png";
     const auto save = [this](const std::string& file, const std::vector<glm::vec4>& pixels) {
-        const ReportPicture small = thumbnail(options_.size, pixels);
-        return savePicture(std::filesystem::path(options_.outputFolder) / file, small.size,
-                           small.pixels, true);
+        return folder_.savePicture(file, thumbnail(stage_.desc().size, pixels));
     };
     const auto failure = [](const Result<void>& result) { return tl::unexpected(result.error()); };
     const CompositingSpace space = stage_.scene().look().space;
-    if (Result<void> saved = save(thumbnailFile, shown(picture, options_.size, space)); !saved) {
+    if (Result<void> saved = save(thumbnailFile, shown(picture, stage_.desc().size, space));
+        !saved) {
         return failure(saved);
     }
     if (Result<void> saved = save(differenceFile, apart.pixels); !saved) {
@@ -187,6 +217,14 @@ Result<json> ErrorRows::savePictures(const std::string& id,
     return json{{"thumbnail", thumbnailFile},
                 {"difference", differenceFile},
                 {"differenceFactor", apart.factor}};
+}
+
+} // namespace
+
+Result<json> errorRows(Stage& stage, const ErrorDesc& desc, const std::vector<Sampling>& grid,
+                       ErrorStore& store, ReportFolder& folder, json& leftOut) {
+    leftOut = json::array();
+    return ErrorRows(stage, desc, store, folder, leftOut).measure(grid);
 }
 
 } // namespace slabcast

@@ -1,10 +1,12 @@
-#include "platform/cli/reference_pictures.h"
-#include "perf/report_json.h"
+#include "perf/error/reference_pictures.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 #include "core/reference/continuous.h"
+#include "perf/number.h"
 
 namespace slabcast {
 
@@ -14,7 +16,8 @@ constexpr double kMaxFactor = 65536.0;
 
 /// Calls `render(view, viewport)` for every eye and puts what it returns in its place.
 template <class Render>
-std::vector<glm::dvec4> ofAllViews(const Stage& stage, glm::ivec2 size, Render render) {
+std::vector<glm::dvec4> ofAllViews(const Stage& stage, Render render) {
+    const glm::ivec2 size = stage.desc().size;
     std::vector<glm::dvec4> picture(static_cast<std::size_t>(size.x) * size.y, glm::dvec4(0.0));
     for (const ViewTarget& target : stage.views(0.0)) {
         const Viewport& v = target.viewport;
@@ -70,11 +73,11 @@ std::vector<glm::vec4> fromTheTop(glm::ivec2 size, Convert colorAt) {
 
 } // namespace
 
-std::vector<glm::dvec4> continuousPicture(const Stage& stage, glm::ivec2 size,
-                                          const std::function<void(double)>& show) {
+std::vector<glm::dvec4> continuousPicture(const Stage& stage) {
     const auto eyes = static_cast<double>(stage.views(0.0).size());
     double done = 0.0;
-    return ofAllViews(stage, size, [&](const View& view, const Viewport& viewport) {
+    ProgressLine progress(stage.watcher());
+    return ofAllViews(stage, [&](const View& view, const Viewport& viewport) {
         std::vector<glm::dvec4> part =
             renderContinuous({.texels = &stage.values(),
                               .geometry = stage.scene().geometry(),
@@ -83,16 +86,19 @@ std::vector<glm::dvec4> continuousPicture(const Stage& stage, glm::ivec2 size,
                               .view = view,
                               .viewport = viewport,
                               .tolerance = kReferenceTolerance},
-                             [&](double share) { show((done + share) / eyes); });
+                             [&](double share) {
+                                 progress.show("integrating the exact picture: " +
+                                               fixed(100.0 * (done + share) / eyes, 0) + " %");
+                             });
         done += 1.0;
         return part;
     });
 }
 
-std::vector<glm::dvec4> discretePicture(const Stage& stage, glm::ivec2 size, const Lattice& lattice,
+std::vector<glm::dvec4> discretePicture(const Stage& stage, const Lattice& lattice,
                                         TransferKind kind) {
     const Scene& scene = stage.scene();
-    return ofAllViews(stage, size, [&](const View& view, const Viewport& viewport) {
+    return ofAllViews(stage, [&](const View& view, const Viewport& viewport) {
         return renderDiscrete(
             {.texels = &stage.values(),
              .geometry = scene.geometry(),

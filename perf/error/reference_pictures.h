@@ -1,31 +1,28 @@
 #pragma once
 
-#include <functional>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "core/reference/discrete.h"
 #include "core/reference/picture_difference.h"
-#include "perf/report_json.h"
 #include "perf/stage.h"
 
 namespace slabcast {
 
 // Pictures here are premultiplied, in the compositing space, rows from the bottom; of the volume's
-// own values (InputOptions::keepValues), so that what the texel format loses is the GPU's part.
+// own values (StageDesc::keepValues), so that what the texel format loses is the GPU's part.
 
 inline constexpr double kReferenceTolerance = 1e-10; // relative, of every smooth piece of a ray
 
-/// What the stage would draw at turn 0, all its eyes, were there no error at all. `show` receives
-/// the part done.
-std::vector<glm::dvec4> continuousPicture(const Stage& stage, glm::ivec2 size,
-                                          const std::function<void(double)>& show);
+/// What the stage would draw at turn 0, all its eyes, were there no error at all. Tells
+/// the stage's watcher how far it is.
+std::vector<glm::dvec4> continuousPicture(const Stage& stage);
 
 /// The samples of `lattice` as the stage's look classifies them, exactly: with the transfer
 /// function as it is meant, or as the table holds it.
 enum class TransferKind : std::uint8_t { Continuous, Table };
-std::vector<glm::dvec4> discretePicture(const Stage& stage, glm::ivec2 size, const Lattice& lattice,
+std::vector<glm::dvec4> discretePicture(const Stage& stage, const Lattice& lattice,
                                         TransferKind kind);
 
 /// For a file: over black, sRGB-encoded, top row first.

@@ -1,6 +1,6 @@
-#include "platform/cli/scene_key.h"
+#include "perf/error/scene_key.h"
 
-#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 namespace slabcast {
 
@@ -11,7 +11,11 @@ std::string fingerprint(std::span<const std::byte> bytes) {
     for (const std::byte byte : bytes) {
         hash = (hash ^ static_cast<std::uint64_t>(byte)) * 1099511628211ULL;
     }
-    return fmt::format("{:016x}", hash);
+    std::string digits(16, '0');
+    for (std::size_t k = digits.size(); k-- > 0; hash >>= 4) {
+        digits[k] = "0123456789abcdef"[hash & 15];
+    }
+    return digits;
 }
 
 json placementKey(const VolumeGeometry& geometry) {

@@ -1,0 +1,199 @@
+#include "perf/error/error_report.h"
+
+#include <optional>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/stopwatch.h"
+#include "perf/csv.h"
+#include "perf/error/error_rows.h"
+#include "perf/error/error_store.h"
+#include "perf/error/error_table_json.h"
+#include "perf/error/reference_pictures.h"
+#include "perf/error/scene_key.h"
+
+namespace slabcast {
+
+namespace {
+
+using nlohmann::json;
+
+const std::string kReferencePicture = std::string(kErrorPictures) + "/reference.png";
+
+constexpr CsvColumn kColumns[] = {{"id", "/id"},
+                                  {"spacing", "/spacing"},
+                                  {"layers", "/layers"},
+                                  {"ratio", "/ratio"},
+                                  {"classification", "/classification"},
+                                  {"target", "/target"},
+                                  {"termination", "/termination"},
+                                  {"jitter", "/jitter"},
+                                  {"planes", "/plan/planes"},
+                                  {"layersPerPlane", "/plan/layersPerPlane"},
+                                  {"totalLayers", "/plan/layers"},
+                                  {"variant", "/plan/variant"},
+                                  {"rmse", "/error/total/rmse"},
+                                  {"psnr", "/error/total/psnr"},
+                                  {"max", "/error/total/max"},
+                                  {"meanDeltaE", "/error/total/meanDeltaE"},
+                                  {"p999DeltaE", "/error/total/p999DeltaE"},
+                                  {"sampling_rmse", "/error/sampling/rmse"},
+                                  {"table_rmse", "/error/table/rmse"},
+                                  {"gpu_rmse", "/error/gpu/rmse"},
+                                  {"order_total", "/order/total"},
+                                  {"order_sampling", "/order/sampling"},
+                                  {"order_table", "/order/table"},
+                                  {"order_gpu", "/order/gpu"}};
+constexpr CsvColumn kLastColumns[] = {{"date", "/date"}, {"command", "/command"}};
+
+const char* nameOf(SegmentForm form) {
+    constexpr const char* kNames[] = {"auto", "unrolled", "loop"};
+    return kNames[static_cast<std::size_t>(form)];
+}
+
+/// All that the continuous picture depends on.
+json referenceKey(const Stage& stage, const RunInfo& run) {
+    const Scene& scene = stage.scene();
+    const StageDesc& o = stage.desc();
+    return {{"commit", run.commit},
+            {"voxels", fingerprint(stage.values().data)},
+            {"placement", placementKey(scene.geometry())},
+            {"transfer function", transferKey(scene.look().tf)},
+            {"space", name(scene.look().space)},
+            {"camera", toJson(o.camera)},
+            {"field of view", o.fovDegrees},
+            {"size", {o.size.x, o.size.y}},
+            {"tolerance", kReferenceTolerance}};
+}
+
+/// And what a row depends on beyond its own settings.
+json rowsKey(const Stage& stage, const ErrorDesc& desc, json key) {
+    const StageDesc& o = stage.desc();
+    const Settings& s = o.settings;
+    key.update({{"device", toJson(stage.caps())},
+                {"texels", name(stage.scene().texels().format)},
+                {"lattice", name(s.lattice)},
+                {"form", nameOf(s.form)},
+                {"skip", s.skip ? name(*s.skip) : "auto"},
+                {"skip block", o.skip.blockEdgeVoxels},
+                {"tighten", s.tighten},
+                {"quick", desc.quick},
+                {"frames", desc.frames}});
+    return key;
+}
+
+json conditions(const Stage& stage, const ErrorDesc& desc) {
+    const StageDesc& o = stage.desc();
+    const Settings& s = o.settings;
+    return {{"size", {o.size.x, o.size.y}},
+            {"camera", toJson(o.camera)},
+            {"fovDegrees", o.fovDegrees},
+            {"transferFunction", stage.scene().look().tf.name},
+            {"space", name(s.space)},
+            {"lattice", name(s.lattice)},
+            {"form", nameOf(s.form)},
+            {"skip", s.skip ? name(*s.skip) : "auto"},
+            {"tighten", s.tighten},
+            {"texelFormat", name(stage.scene().texels().format)},
+            {"quantisationError", stage.scene().texels().maxQuantisationError},
+            {"smallestVoxelEdgeMm", stage.scene().facts().smallestVoxelEdgeMm},
+            {"framesPerRowAtMost", desc.frames},
+            {"quick", desc.quick}};
+}
+
+/// From the store, or integrated and put there; its picture too.
+Result<void> makeReference(const Stage& stage, ErrorStore& store, ReportFolder& folder) {
+    if (store.reference() == nullptr) {
+        const Stopwatch watch;
+        StoredReference made;
+        made.pixels = continuousPicture(stage);
+        made.seconds = watch.ms() / 1000.0;
+        if (Result<void> kept = store.setReference(std::move(made)); !kept) {
+            return kept;
+        }
+    }
+    const glm::ivec2 size = stage.desc().size;
+    return folder.savePicture(kReferencePicture, {size, shown(store.reference()->pixels, size,
+                                                              stage.scene().look().space)});
+}
+
+std::optional<double> timeOf(const json& row) {
+    return row.at("frameMs").at("median").get<double>();
+}
+
+std::optional<double> fetchesOf(const json& row) {
+    const json& counters = row.at("counters");
+    return counters.is_null() ? std::nullopt
+                              : std::optional(counters.at("volume_fetches").get<double>() +
+                                              counters.at("skip_fetches").get<double>());
+}
+
+/// What an error table keeps of the rows.
+std::vector<MeasuredError> measuredOf(const Stage& stage, const std::vector<Sampling>& grid,
+                                      const json& rows, const RunInfo& run) {
+    const glm::ivec2 size = stage.desc().size;
+    const double megapixels = 1e-6 * size.x * size.y;
+    const SceneLabel label = labelOf(stage);
+    std::vector<MeasuredError> measured;
+    for (const Sampling& sampling : grid) {
+        for (const json& row : rows) {
+            if (row.at("id") == idOf(sampling)) {
+                measured.push_back(
+                    {label, size, sampling, totalRmse(row), *timeOf(row) / megapixels, run.commit});
+            }
+        }
+    }
+    return measured;
+}
+
+ErrorStore openStore(const Stage& stage, const ErrorDesc& desc, const RunInfo& run,
+                     ReportFolder& folder) {
+    std::vector<std::string> notes;
+    const json key = referenceKey(stage, run);
+    ErrorStore store = ErrorStore::open(folder, key, rowsKey(stage, desc, key), notes);
+    for (const std::string& note : notes) {
+        if (stage.watcher().say) {
+            stage.watcher().say(note);
+        }
+    }
+    return store;
+}
+
+} // namespace
+
+Result<std::vector<MeasuredError>> measureErrors(Stage& stage, const ErrorDesc& desc,
+                                                 const RunInfo& run, ReportFolder& folder) {
+    const std::string started = timestamp();
+    ErrorStore store = openStore(stage, desc, run, folder);
+    if (Result<void> made = makeReference(stage, store, folder); !made) {
+        return tl::unexpected(made.error());
+    }
+    const std::vector<Sampling> grid = gridOf(desc.axes, desc.quick);
+    json leftOut;
+    Result<json> rows = errorRows(stage, desc, grid, store, folder, leftOut);
+    if (!rows) {
+        return tl::unexpected(rows.error());
+    }
+    addOrders(*rows);
+    json report = reportHeader(run, stage);
+    const glm::ivec2 size = stage.desc().size;
+    report.update({{"started", started},
+                   {"leftOut", std::move(leftOut)},
+                   {"conditions", conditions(stage, desc)},
+                   {"axes", toJson(desc.axes)},
+                   {"reference",
+                    {{"seconds", store.reference()->seconds},
+                     {"tolerance", kReferenceTolerance},
+                     {"size", {size.x, size.y}},
+                     {"picture", kReferencePicture}}},
+                   {"front", frontOf(*rows, timeOf)},
+                   {"frontByFetches", frontOf(*rows, fetchesOf)},
+                   {"rows", *rows}});
+    return folder
+        .write("error.csv", csvOf(*rows, columnsOf({kColumns, kMeasuredColumns, kLastColumns})))
+        .and_then([&] { return folder.write("error.json", report.dump(2) + "\n"); })
+        .map([&] { return measuredOf(stage, grid, *rows, run); });
+}
+
+} // namespace slabcast

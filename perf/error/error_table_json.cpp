@@ -1,0 +1,170 @@
+#include "perf/error/error_table_json.h"
+
+#include <algorithm>
+#include <span>
+#include <tuple>
+
+#include <nlohmann/json.hpp>
+
+#include "perf/error/error_grid.h"
+#include "perf/error/scene_key.h"
+
+namespace slabcast {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr int kVersion = 2;
+constexpr double kMost = 1e300;
+
+/// Reads members of one row; the first that is missing or of another kind is what is wrong.
+class RowReader {
+public:
+    explicit RowReader(const json& row) : row_(row) {}
+
+    std::string text(const char* key) {
+        const json* value = member(key, &json::is_string);
+        return value == nullptr ? "" : value->get<std::string>();
+    }
+    bool flag(const char* key) {
+        const json* value = member(key, &json::is_boolean);
+        return value != nullptr && value->get<bool>();
+    }
+    double number(const char* key, double low, double high) {
+        const json* value = member(key, &json::is_number);
+        return value == nullptr ? low : inside(key, value->get<double>(), low, high);
+    }
+    glm::ivec2 size(const char* key) {
+        const json* value = member(key, &json::is_array);
+        const bool sound = value != nullptr && value->size() == 2 &&
+                           value->at(0).is_number_integer() && value->at(1).is_number_integer();
+        return sound ? glm::ivec2(value->at(0).get<int>(), value->at(1).get<int>())
+                     : (complain(key), glm::ivec2(0));
+    }
+    /// One of the values that are named so.
+    template <class T>
+    T named(const char* key, std::initializer_list<T> values) {
+        const std::string word = text(key);
+        const auto* found = std::find_if(values.begin(), values.end(),
+                                         [&word](T value) { return word == name(value); });
+        return found != values.end() ? *found : (complain(key), *values.begin());
+    }
+    /// A number, or nothing for "off".
+    std::optional<double> orOff(const char* key, double low, double high) {
+        return row_.contains(key) && row_.at(key) == "off" ? std::nullopt
+                                                           : std::optional(number(key, low, high));
+    }
+    /// Empty where nothing is.
+    const std::string& wrong() const { return wrong_; }
+
+private:
+    const json* member(const char* key, bool (json::*isOfKind)() const) {
+        if (row_.is_object() && row_.contains(key) && (row_.at(key).*isOfKind)()) {
+            return &row_.at(key);
+        }
+        complain(key);
+        return nullptr;
+    }
+    double inside(const char* key, double value, double low, double high) {
+        return value >= low && value <= high ? value : (complain(key), low);
+    }
+    void complain(const char* key) { wrong_ = wrong_.empty() ? std::string("bad ") + key : wrong_; }
+
+    const json& row_;
+    std::string wrong_;
+};
+
+json rowOf(const MeasuredError& m) {
+    json row = toJson(m.sampling);
+    row.update({{"volume", m.scene.volume},
+                {"tf", m.scene.tf},
+                {"fingerprint", m.scene.fingerprint},
+                {"space", name(m.scene.space)},
+                {"size", {m.size.x, m.size.y}},
+                {"rmse", m.rmse},
+                {"msPerMegapixel", m.msPerMegapixel},
+                {"commit", m.commit}});
+    return row;
+}
+
+MeasuredError measuredIn(RowReader& row) {
+    return {
+        .scene = {row.text("volume"), row.text("tf"), row.text("fingerprint"),
+                  row.named("space", {CompositingSpace::Display, CompositingSpace::Linear})},
+        .size = row.size("size"),
+        .sampling = {.layerSpacingVoxels = row.number("spacing", 1e-3, 1e6),
+                     .layersPerPlane = static_cast<int>(row.number("layers", 0, kMaxTotalLayers)),
+                     .classification =
+                         row.named("classification", {Classification::Post, Classification::Pre,
+                                                      Classification::Preintegrated}),
+                     .target = row.named("target", {TargetFormat::Rgba8, TargetFormat::Rgba16f}),
+                     .termination = row.orOff("termination", 0.0, 1.0),
+                     .jitter = row.flag("jitter")},
+        .rmse = row.number("rmse", 0.0, kMost),
+        .msPerMegapixel = row.number("msPerMegapixel", 0.0, kMost),
+        .commit = row.text("commit")};
+}
+
+} // namespace
+
+std::string errorTableText(const std::vector<MeasuredError>& table) {
+    json rows = json::array();
+    for (const MeasuredError& m : table) {
+        rows.push_back(rowOf(m));
+    }
+    return json{{"version", kVersion}, {"rows", std::move(rows)}}.dump(1) + "\n";
+}
+
+Result<std::vector<MeasuredError>> parseErrorTable(std::string_view text) {
+    const json content = json::parse(text, nullptr, false);
+    if (!content.is_object() || !content.contains("version") || !content.contains("rows")) {
+        return fail(ErrorCode::FileUnreadable, "it is something else, or cut short");
+    }
+    if (content.at("version") != kVersion) {
+        return fail(ErrorCode::FileUnreadable, "of another version");
+    }
+    std::vector<MeasuredError> table;
+    for (const json& row : content.at("rows")) {
+        RowReader reader(row);
+        table.push_back(measuredIn(reader));
+        if (!reader.wrong().empty()) {
+            return fail(ErrorCode::FileUnreadable, reader.wrong());
+        }
+    }
+    return table;
+}
+
+std::vector<MeasuredError> refreshed(std::vector<MeasuredError> table,
+                                     const std::vector<MeasuredError>& fresh) {
+    std::erase_if(table, [&fresh](const MeasuredError& old) {
+        return std::any_of(fresh.begin(), fresh.end(), [&old](const MeasuredError& now) {
+            return now.commit != old.commit ||
+                   (now.scene == old.scene && now.size == old.size && now.sampling == old.sampling);
+        });
+    });
+    table.insert(table.end(), fresh.begin(), fresh.end());
+    return table;
+}
+
+SceneLabel labelOf(const Stage& stage) {
+    const Scene& scene = stage.scene();
+    const glm::ivec3 dims = stage.info().dims;
+    const std::string content = json{statisticsKey(scene.statistics()),
+                                     placementKey(scene.geometry()), transferKey(scene.look().tf)}
+                                    .dump();
+    const auto edge = [](int length) { return std::to_string(length); };
+    return {stage.info().name + " " + edge(dims.x) + "x" + edge(dims.y) + "x" + edge(dims.z),
+            scene.look().tf.name, fingerprint(std::as_bytes(std::span(content))),
+            scene.look().space};
+}
+
+bool hasUsualSettings(const StageDesc& desc) {
+    const auto othersOf = [](const StageDesc& d) {
+        const Settings& s = d.settings;
+        return std::make_tuple(s.skip, s.tighten, s.lattice, s.form, d.skip, d.exactTexels);
+    };
+    return othersOf(desc) == othersOf(StageDesc{});
+}
+
+} // namespace slabcast

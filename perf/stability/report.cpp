@@ -1,0 +1,160 @@
+#include "perf/stability/report.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/stopwatch.h"
+#include "perf/csv.h"
+#include "perf/stability/bench.h"
+
+namespace slabcast::stability {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr CsvColumn kColumns[] = {
+    {"family", "/family"},     {"name", "/name"}, {"quantity", "/quantity"}, {"bound", "/bound"},
+    {"measured", "/measured"}, {"pass", "/pass"}, {"failure", "/failure"},   {"reason", "/reason"}};
+
+/// JSON knows neither NaN nor infinity.
+json finite(double value) {
+    return std::isfinite(value) ? json(value) : json();
+}
+
+json toJson(const Series& series) {
+    json result = {{"group", series.group},
+                   {"x", series.x},
+                   {"y", finite(series.y)},
+                   {"xLabel", series.xLabel},
+                   {"yLabel", series.yLabel}};
+    if (!series.panel.empty()) {
+        result["panel"] = series.panel;
+    }
+    return result;
+}
+
+json toJson(const LeftOut& leftOut) {
+    return {{"plan", leftOut.plan},
+            {"activeUniforms", leftOut.activeUniforms},
+            {"samplers", leftOut.samplers},
+            {"fragments", leftOut.fragments},
+            {"layers", leftOut.layers},
+            {"volumeAndSkipBytes", leftOut.volumeAndSkipBytes},
+            {"timedFrames", leftOut.timedFrames},
+            {"leastFrameMs", leftOut.leastFrameMs},
+            {"leastFrameMsWithAll", leftOut.leastFrameMsWithAll}};
+}
+
+/// "stiff_one-unit-step-slicing-rgba8_0.png": letters, digits and points of the name.
+std::string pictureFile(const Case& c, std::size_t index) {
+    std::string file = c.family + "_";
+    for (const char letter : c.name) {
+        const bool kept = std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '.';
+        if (kept || file.back() != '-') {
+            file += kept ? letter : '-';
+        }
+    }
+    return std::string(kPictures) + "/" + file + "_" + std::to_string(index) + ".png";
+}
+
+/// Over black, as a premultiplied picture is where nothing is added.
+ReportPicture forPage(const Picture& picture) {
+    ReportPicture topDown{picture.size, {}};
+    topDown.pixels.reserve(picture.pixels.size());
+    for (int y = picture.size.y - 1; y >= 0; --y) {
+        const auto row = picture.pixels.begin() + static_cast<std::ptrdiff_t>(y) * picture.size.x;
+        topDown.pixels.insert(topDown.pixels.end(), row, row + picture.size.x);
+    }
+    return topDown;
+}
+
+/// One case, and its pictures as files.
+Result<json> written(const Case& c, ReportFolder& folder) {
+    json result = {{"family", c.family},     {"name", c.name},
+                   {"quantity", c.quantity}, {"bound", finite(c.bound)},
+                   {"reason", c.reason},     {"measured", finite(c.measured)},
+                   {"pass", c.pass()}};
+    if (!c.failure.empty()) {
+        result["failure"] = c.failure;
+    }
+    if (c.series) {
+        result["series"] = toJson(*c.series);
+    }
+    if (c.leftOut) {
+        result["leftOut"] = toJson(*c.leftOut);
+    }
+    for (std::size_t k = 0; k < c.pictures.size(); ++k) {
+        const std::string file = pictureFile(c, k);
+        if (Result<void> done = folder.savePicture(file, forPage(c.pictures[k].picture)); !done) {
+            return tl::unexpected(done.error());
+        }
+        result["pictures"].push_back({{"name", c.pictures[k].name}, {"file", file}});
+    }
+    return result;
+}
+
+/// The family of this name; all where it is empty.
+std::vector<Family> chosen(const std::string& name) {
+    std::vector<Family> result;
+    for (const Family& family : families()) {
+        if (name.empty() || name == family.name) {
+            result.push_back(family);
+        }
+    }
+    return result;
+}
+
+void runFamilies(Bench& bench, std::span<const Family> run, const Watcher& watcher) {
+    ProgressLine progress(watcher);
+    int failed = 0;
+    const char* title = "";
+    bench.setWatcher([&](const Case& c) {
+        failed += c.pass() ? 0 : 1;
+        progress.show(std::string(title) + ": " + std::to_string(bench.cases().size() + 1) +
+                      " cases, " + std::to_string(failed) + " failed");
+    });
+    for (const Family& family : run) {
+        title = family.title;
+        progress.show(title);
+        family.run(bench);
+    }
+    bench.setWatcher({});
+}
+
+json namesOf(std::span<const Family> families) {
+    json result = json::array();
+    for (const Family& family : families) {
+        result.push_back({{"name", family.name}, {"title", family.title}});
+    }
+    return result;
+}
+
+} // namespace
+
+Result<void> measure(Bench& bench, const std::string& family, const RunInfo& run,
+                     ReportFolder& folder, const Watcher& watcher) {
+    const Stopwatch watch;
+    const std::vector<Family> families = chosen(family);
+    runFamilies(bench, families, watcher);
+    json report = reportHeader(run, bench.caps());
+    report.update({{"reduced", bench.reduced()},
+                   {"seconds", watch.ms() / 1000.0},
+                   {"families", namesOf(families)},
+                   {"cases", json::array()}});
+    for (const Case& c : bench.cases()) {
+        Result<json> one = written(c, folder);
+        if (!one) {
+            return tl::unexpected(one.error());
+        }
+        report["cases"].push_back(std::move(*one));
+    }
+    return folder.write("stability.json", report.dump(2) + "\n").and_then([&] {
+        return folder.write("stability.csv", csvOf(report["cases"], kColumns));
+    });
+}
+
+} // namespace slabcast::stability
