@@ -12,7 +12,7 @@ namespace slabcast {
 
 /// Of replays of the same script: each frame's times are medians, and it is equal where it always
 /// was; all else is the first replay's. Contract: one replay at least, all of as many frames.
-/// Tested by: edit_summary_test.cpp
+/// Tested by: summary_test.cpp
 std::vector<EditRow> mediansOf(const EditReplays& replays);
 
 /// The slowest frame of any replay, in octree frames of its own time.
@@ -43,7 +43,7 @@ struct EditSummary {
 };
 
 /// `budgetMs`: what a frame may take; by the octree's median where none is given.
-/// Tested by: edit_summary_test.cpp
+/// Tested by: summary_test.cpp
 EditSummary summaryOf(const std::vector<EditRow>& rows, std::optional<double> budgetMs);
 
 } // namespace slabcast

@@ -30,7 +30,7 @@ const char* name(Sense sense); // ">=" or "<="
 
 /// The figures to reach, each worked out from measured rows. A goal stands only where it is meant
 /// for: skull CT under bone, the gap phantom, or any volume. Contract: rows of a race have as many
-/// samples as its others. Tested by: skip_figures_test.cpp
+/// samples as its others. Tested by: figures_test.cpp
 std::vector<Figure> figuresOf(std::span<const VolumeRecord> volumes, std::span<const Row> rows);
 
 /// How many figures have a value and a goal, and how many of these reach it.
