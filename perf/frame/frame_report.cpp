@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "perf/error/reference_pictures.h"
+#include "perf/settings_json.h"
 
 namespace slabcast {
 
@@ -58,8 +59,8 @@ Result<CostPicture> drawCosts(Stage& stage, const FramePlan& plan, HeatmapQuanti
     return picture;
 }
 
-std::string frameReport(Stage& stage, const FramePlan& plan, const FrameFindings& findings,
-                        const RunInfo& run) {
+std::string frameReport(Stage& stage, const FramePlan& plan, const Settings& settings,
+                        const FrameFindings& findings, const RunInfo& run) {
     const GpuMemory gpu = stage.renderer().gpuMemory();
     json skip = toJson(stage.scene().skip());
     if (!skip.is_null()) {
@@ -70,6 +71,7 @@ std::string frameReport(Stage& stage, const FramePlan& plan, const FrameFindings
                    {"commit", run.commit},
                    {"volume", toJson(stage.info())},
                    {"plan", toJson(plan)},
+                   {"settings", toJson(settings)},
                    {"skip", std::move(skip)},
                    {"frame_ms", toJson(summarise(findings.frameMs))},
                    {"counters", toJson(stage.countWork(plan))},

@@ -42,7 +42,7 @@ struct FrameFindings {
     const CostPicture* costs = nullptr;
 };
 /// As JSON; keys are stable: people plot them.
-std::string frameReport(Stage& stage, const FramePlan& plan, const FrameFindings& findings,
-                        const RunInfo& run);
+std::string frameReport(Stage& stage, const FramePlan& plan, const Settings& settings,
+                        const FrameFindings& findings, const RunInfo& run);
 
 } // namespace slabcast

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "platform/cli/settings_options.h"
 #include "platform/cli/skip_options.h"
 
 namespace slabcast {
@@ -76,10 +77,10 @@ std::string renderCommandLine(const SceneOptions& scene, const Sampling& samplin
         .add("--form", plan.variant.unroll > 0 ? "unrolled" : "loop")
         .add("--skip", name(plan.skip))
         .addIf(!plan.tighten, "--tighten", "off");
-    for (const SkipParameter& parameter : skipParameters()) {
-        const std::string word = parameter.word(scene.skip);
-        line.addIf(parameter.isOf(plan.skip) && word != parameter.word(usual.skip), parameter.flag,
-                   word);
+    for (const Setting* setting : parametersOf(plan.skip)) {
+        const SettingValue value = setting->read(scene.settings);
+        line.addIf(value != setting->read(usual.settings), flagOf(*setting).c_str(),
+                   setting->text(value));
     }
     return line.text();
 }

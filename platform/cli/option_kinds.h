@@ -1,16 +1,15 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "platform/cli/command.h"
 #include "platform/io/parse_text.h"
 
 namespace slabcast {
@@ -18,18 +17,24 @@ namespace slabcast {
 template <class T>
 using Parser = std::function<std::optional<T>(const std::string& word)>;
 
+/// An option that keeps its word as it is.
+Option& addText(Command& command, Option option, std::string& value);
+/// An option without a word.
+Option& addFlag(Command& command, Option option, bool& value);
+
 /// An option of one word. `parse` gives nothing for what it cannot take, `needed` says what it can.
 template <class T>
-CLI::Option* addParsed(CLI::App& command, const std::string& flag, T& value, Parser<T> parse,
-                       const std::string& needed, const std::string& help) {
-    const auto take = [=, &value](const std::string& word) {
+Option& addParsed(Command& command, Option option, T& value, Parser<std::type_identity_t<T>> parse,
+                  const std::string& needed) {
+    option.take = [=, &value](const std::string& word) -> Result<void> {
         std::optional<T> parsed = parse(word);
         if (!parsed) {
-            throw CLI::ValidationError(flag, fmt::format("'{}' is not {}", word, needed));
+            return fail(ErrorCode::InvalidArgument, fmt::format("'{}' is not {}", word, needed));
         }
         value = *std::move(parsed);
+        return {};
     };
-    return command.add_option_function<std::string>(flag, take, help);
+    return command.options.emplace_back(std::move(option));
 }
 
 template <class T>
@@ -59,12 +64,11 @@ Parser<T> numberParser(Number low, Number high) {
 
 /// A number from `low` to `high`. `value` may be an optional.
 template <class T, class Number = typename NumberOf<T>::Type>
-CLI::Option* addNumber(CLI::App& command, const std::string& flag, T& value,
-                       std::type_identity_t<Number> low, std::type_identity_t<Number> high,
-                       const std::string& help) {
+Option& addNumber(Command& command, Option option, T& value, std::type_identity_t<Number> low,
+                  std::type_identity_t<Number> high) {
     const auto needed = fmt::format(
         "a {} from {} to {}", std::is_integral_v<Number> ? "whole number" : "number", low, high);
-    return addParsed<T>(command, flag, value, numberParser<T>(low, high), needed, help);
+    return addParsed<T>(command, std::move(option), value, numberParser<T>(low, high), needed);
 }
 
 template <class T>
@@ -104,18 +108,18 @@ Parser<T> choiceParser(const Choices<T>& choices) {
 
 /// An option whose words stand for values. What `value` is now is the default.
 template <class T>
-CLI::Option* addChoice(CLI::App& command, const std::string& flag, T& value,
-                       const Choices<std::type_identity_t<T>>& choices, const std::string& help) {
-    const auto needed = fmt::format("one of {}", wordsOf(choices, ", "));
-    return addParsed<T>(command, flag, value, choiceParser(choices), needed, help)
-        ->type_name(wordsOf(choices, "|"))
-        ->default_str(wordFor(choices, value));
+Option& addChoice(Command& command, Option option, T& value,
+                  const Choices<std::type_identity_t<T>>& choices) {
+    option.word = wordsOf(choices, "|");
+    option.usually = wordFor(choices, value);
+    return addParsed<T>(command, std::move(option), value, choiceParser(choices),
+                        "one of " + wordsOf(choices, ", "));
 }
 
 /// An option of several values with commas between. `needed`: what each of them may be.
 template <class T>
-CLI::Option* addList(CLI::App& command, const std::string& flag, std::vector<T>& values,
-                     Parser<T> parse, const std::string& needed, const std::string& help) {
+Option& addList(Command& command, Option option, std::vector<T>& values,
+                Parser<std::type_identity_t<T>> parse, const std::string& needed) {
     const auto parseAll = [=](const std::string& word) -> std::optional<std::vector<T>> {
         std::vector<T> parsed;
         for (const std::string_view part : split(word, ',')) {
@@ -127,8 +131,8 @@ CLI::Option* addList(CLI::App& command, const std::string& flag, std::vector<T>&
         }
         return parsed;
     };
-    return addParsed<std::vector<T>>(command, flag, values, parseAll,
-                                     needed + " with commas between", help);
+    return addParsed<std::vector<T>>(command, std::move(option), values, parseAll,
+                                     needed + " with commas between");
 }
 
 } // namespace slabcast

@@ -1,9 +1,13 @@
 #include "platform/cli/options.h"
 
+#include <filesystem>
+
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "core/plan/settings_check.h"
 #include "perf/stability/bench.h"
+#include "platform/cli/picture_file.h"
 #include "platform/cli/scene_options.h"
 #include "platform/cli/skip_options.h"
 
@@ -20,31 +24,34 @@ Choices<std::string> familyWords() {
     return words;
 }
 
-void bindTargetError(CLI::App& command, RenderOptions& o) {
+void bindTargetError(Command& command, RenderOptions& o) {
     const auto group = "Accuracy";
-    CLI::Option* target =
-        addNumber(command, "--target-error", o.targetError, 0.0, 1.0,
-                  "take the cheapest sampling (--layer-spacing, --layers-per-plane, --classify, "
-                  "--target, --termination, --jitter) that is expected to come within this RMSE of "
-                  "the exact picture, of those that `slabcast error` measured on this device")
-            ->type_name("RMSE")
-            ->default_str("off")
-            ->group(group);
-    for (const char* decided : {"--layer-spacing", "--layers", "--layers-per-plane", "--planes",
-                                "--classify", "--target", "--termination", "--jitter"}) {
-        target->excludes(command.get_option(decided));
-    }
-    command
-        .add_flag("--verify", o.verify,
-                  "integrate the exact picture too, which takes a while, and print how far off "
-                  "this one is; --stats gets it as well")
-        ->group(group);
-    command.final_callback([&o] {
+    addNumber(command,
+              {.flag = "--target-error",
+               .help = "take the cheapest sampling (--layer-spacing, --layers-per-plane, "
+                       "--classify, --target, --termination, --jitter) that is expected to come "
+                       "within this RMSE of the exact picture, of those that `slabcast error` "
+                       "measured on this device",
+               .word = "RMSE",
+               .usually = "off",
+               .group = group,
+               .hides = {"--layer-spacing", "--layers", "--layers-per-plane", "--planes",
+                         "--classify", "--target", "--termination", "--jitter"}},
+              o.targetError, 0.0, 1.0);
+    addFlag(command,
+            {.flag = "--verify",
+             .help = "integrate the exact picture too, which takes a while, and print how far off "
+                     "this one is; --stats gets it as well",
+             .group = group},
+            o.verify);
+    command.checks.emplace_back([&o](const Given&) -> Result<void> {
         if (o.settings.shaded && (o.verify || o.targetError)) {
-            throw CLI::ValidationError(o.verify ? "--verify" : "--target-error",
-                                       "knows pictures without shading only: leave it or --shade "
-                                       "phong out");
+            return fail(ErrorCode::InvalidArgument,
+                        fmt::format("{}: knows pictures without shading only: leave it or --shade "
+                                    "phong out",
+                                    o.verify ? "--verify" : "--target-error"));
         }
+        return {};
     });
 }
 
@@ -59,113 +66,156 @@ std::optional<HeatmapScale> parseHeatmapScale(const std::string& word) {
     return maximum ? std::optional(HeatmapScale{.maximum = maximum}) : std::nullopt;
 }
 
-void bindHeatmap(CLI::App& command, RenderOptions& o) {
+void bindHeatmap(Command& command, RenderOptions& o) {
     const auto group = "Output";
-    CLI::Option* heatmap =
-        addChoice(command, "--heatmap", o.heatmap,
-                  {{"off", std::nullopt},
-                   {name(HeatmapQuantity::Iterations), HeatmapQuantity::Iterations},
-                   {name(HeatmapQuantity::Fetches), HeatmapQuantity::Fetches},
-                   {name(HeatmapQuantity::Layers), HeatmapQuantity::Layers}},
-                  "draw what each pixel costs instead: iterations are looks at the skip structure "
-                  "and layers evaluated, fetches are of volume and skip structure")
-            ->group(group);
-    addParsed<HeatmapScale>(
-        command, "--heatmap-scale", o.heatmapScale, parseHeatmapScale,
-        fmt::format("normalised, absolute or a number from {} to {}", kLeastHeat, kMostHeat),
-        "cost of the last colour: the picture's most, the number of layers in all, or a number")
-        ->type_name("normalised|absolute|MAXIMUM")
-        ->default_str("normalised")
-        ->needs(heatmap)
-        ->group(group);
+    addChoice(command,
+              {.flag = "--heatmap",
+               .help = "draw what each pixel costs instead: iterations are looks at the skip "
+                       "structure and layers evaluated, fetches are of volume and skip structure",
+               .group = group,
+               .hides = {"--background"}},
+              o.heatmap,
+              {{"off", std::nullopt},
+               {name(HeatmapQuantity::Iterations), HeatmapQuantity::Iterations},
+               {name(HeatmapQuantity::Fetches), HeatmapQuantity::Fetches},
+               {name(HeatmapQuantity::Layers), HeatmapQuantity::Layers}});
+    addParsed(command,
+              {.flag = "--heatmap-scale",
+               .help =
+                   "cost of the last colour: the picture's most, the number of layers in all, or a "
+                   "number",
+               .word = "normalised|absolute|MAXIMUM",
+               .usually = "normalised",
+               .group = group,
+               .needs = {"--heatmap"}},
+              o.heatmapScale, parseHeatmapScale,
+              fmt::format("normalised, absolute or a number from {} to {}", kLeastHeat, kMostHeat));
+}
+
+/// What settings that go together cannot be: core's own words.
+void checkSettings(Command& command, const Settings& settings) {
+    command.checks.emplace_back([&settings](const Given&) { return check(settings); });
+}
+
+void checkOutputs(Command& command, const RenderOptions& o) {
+    command.checks.emplace_back([&o](const Given&) -> Result<void> {
+        const std::filesystem::path picture = o.output;
+        const auto place = [](const std::string& file) {
+            return std::filesystem::absolute(file).lexically_normal();
+        };
+        if (!isPictureName(picture)) {
+            return fail(ErrorCode::InvalidArgument,
+                        fmt::format("--output: '{}' is not the name of a .png or .exr file: give "
+                                    "a name that ends so",
+                                    o.output));
+        }
+        if (!o.statsFile.empty() && place(o.statsFile) == place(o.output)) {
+            return fail(ErrorCode::InvalidArgument,
+                        fmt::format("--stats: {} is named for both picture and statistics; give "
+                                    "--stats another name",
+                                    o.statsFile));
+        }
+        return {};
+    });
+}
+
+void bindOutputs(Command& command, RenderOptions& o) {
+    const auto group = "Output";
+    addText(command,
+            {.flag = "-o,--output",
+             .help = "picture to write, .png or .exr",
+             .word = "FILE",
+             .group = group,
+             .required = true},
+            o.output);
+    addNumber(command,
+              {.flag = "--frames",
+               .help = "turn the volume once around in N frames and time them, for --stats; the "
+                       "first is written",
+               .word = "N",
+               .usually = fmt::format("{}", o.frames),
+               .group = group,
+               .needs = {"--stats"}},
+              o.frames, 1, 100000);
+    addText(command,
+            {.flag = "--stats",
+             .help = "write device, plan, frame times and work counters as JSON",
+             .word = "FILE",
+             .group = group},
+            o.statsFile);
+    addFlag(command,
+            {.flag = "--explain", .help = "print what the plan chose and why", .group = group},
+            o.explain);
+    checkOutputs(command, o);
 }
 
 } // namespace
 
-void bindRender(CLI::App& command, RenderOptions& o) {
-    const auto output = "Output";
-    command.add_option("-o,--output", o.output, "picture to write, .png or .exr")
-        ->required()
-        ->type_name("FILE")
-        ->group(output);
-    addNumber(command, "--frames", o.frames, 1, 100000,
-              "turn the volume once around in N frames and time them; the first is written")
-        ->type_name("N")
-        ->default_str(fmt::format("{}", o.frames))
-        ->group(output);
-    command
-        .add_option("--stats", o.statsFile,
-                    "write device, plan, frame times and work counters as JSON")
-        ->type_name("FILE")
-        ->group(output);
-    command.add_flag("--explain", o.explain, "print what the plan chose and why")->group(output);
+void bindRender(Command& command, RenderOptions& o) {
+    bindOutputs(command, o);
     bindHeatmap(command, o);
     bindScene(command, o);
     bindBackground(command, o);
-    bindSkipping(command, o);
-    addNumber(command, "--layers", o.settings.totalLayers, 1, kMaxLayers,
-              "layers in all, instead of --layer-spacing")
-        ->type_name("N")
-        ->default_str("by spacing")
-        ->group(kLayersGroup);
-    addNumber(command, "--planes", o.settings.planes, 1, kMaxLayers,
-              "proxy planes: 1 is ray casting, as many as layers is slicing")
-        ->type_name("N")
-        ->default_str("the fastest of several, measured")
-        ->group(kLayersGroup);
-    bindLayersPerPlane(command, o.settings, "instead of --planes: 1 is slicing", "by planes");
+    bindSettingsBut(command, o.settings, {});
     bindTargetError(command, o);
-    command.footer("Example: a skull from the side, shaded, with the reasons for what was chosen\n"
-                   "  slabcast render skull.nrrd -o skull.png --tf ct-bone --shade phong --camera "
-                   "90,10,2.5 --explain");
+    checkSettings(command, o.settings);
+    checkSkipping(command, o);
+    command.footer =
+        "Example: a skull from the side, shaded, with the reasons for what was chosen\n"
+        "  slabcast render skull.nrrd -o skull.png --tf ct-bone --shade phong "
+        "--camera 90,10,2.5 --explain";
 }
 
-void bindSweep(CLI::App& command, SweepOptions& o) {
+void bindSweep(Command& command, SweepOptions& o) {
     const auto group = "Output";
     o.size = {512, 512};
-    command
-        .add_option("--out", o.outputFolder,
-                    "folder for sweep.json, sweep.csv and report.html; made where it is missing")
-        ->required()
-        ->type_name("FOLDER")
-        ->group(group);
-    addList<int>(command, "--layers", o.layersPerPlane, numberParser<int>(0, kMaxLayers),
-                 fmt::format("whole numbers from 0 to {}", kMaxLayers),
-                 "layers per plane to measure; 1 is slicing, 0 is all in one plane: ray casting")
-        ->type_name("N,N,...")
-        ->default_str(fmt::format("{},0", fmt::join(kUnrollLengths, ",")))
-        ->group(group);
-    addNumber(command, "--frames", o.frames, 1, 10000, "frames of one turn per row")
-        ->type_name("N")
-        ->default_str(fmt::format("{}", o.frames))
-        ->group(group);
+    bindReportFolder(command, o.outputFolder,
+                     "sweep.json, sweep.csv and report.html; made where it is missing");
+    addList(
+        command,
+        {.flag = "--layers",
+         .help = "layers per plane to measure; 1 is slicing, 0 is all in one plane: ray casting",
+         .word = "N,N,...",
+         .usually = fmt::format("{},0", fmt::join(kUnrollLengths, ",")),
+         .group = group},
+        o.layersPerPlane, numberParser<int>(0, kMaxTotalLayers),
+        fmt::format("whole numbers from 0 to {}", kMaxTotalLayers));
+    addNumber(command,
+              {.flag = "--frames",
+               .help = "frames of one turn per row",
+               .word = "N",
+               .usually = fmt::format("{}", o.frames),
+               .group = group},
+              o.frames, 1, 10000);
     bindScene(command, o);
     bindBackground(command, o);
-    bindSkipping(command, o);
-    command.footer("Example: what each ratio costs on this device; look at sweep/report.html\n"
-                   "  slabcast sweep phantom:vessels:128 --layers 1,4,16,64,0 --out sweep");
+    bindSettingsBut(command, o.settings, {"layers", "planes", "layers-per-plane"});
+    checkSettings(command, o.settings);
+    checkSkipping(command, o);
+    command.footer = "Example: what each ratio costs on this device; look at sweep/report.html\n"
+                     "  slabcast sweep phantom:vessels:128 --layers 1,4,16,64,0 --out sweep";
 }
 
-void bindStability(CLI::App& command, StabilityOptions& o) {
+void bindStability(Command& command, StabilityOptions& o) {
     const auto group = "Output";
-    command
-        .add_option("--out", o.outputFolder,
-                    "folder for stability.json, stability.csv and report.html; made where missing")
-        ->required()
-        ->type_name("FOLDER")
-        ->group(group);
-    addChoice(command, "--family", o.family, familyWords(), "only the cases of this family")
-        ->group(group);
-    command.add_flag("--reduced", o.reduced, "fewer sizes, views and repetitions; the same bounds")
-        ->group(group);
-    command.footer("Example: every case, with its bound and what was measured\n"
-                   "  slabcast stability --out stability");
+    bindReportFolder(command, o.outputFolder,
+                     "stability.json, stability.csv and report.html; made where missing");
+    addChoice(command,
+              {.flag = "--family", .help = "only the cases of this family", .group = group},
+              o.family, familyWords());
+    addFlag(command,
+            {.flag = "--reduced",
+             .help = "fewer sizes, views and repetitions; the same bounds",
+             .group = group},
+            o.reduced);
+    command.footer = "Example: every case, with its bound and what was measured\n"
+                     "  slabcast stability --out stability";
 }
 
-void bindInfo(CLI::App& command, InputOptions& o) {
+void bindInfo(Command& command, InputOptions& o) {
     bindInput(command, o);
-    command.footer("Example: half the resolution of voxels without a header\n"
-                   "  slabcast info head.raw --raw 256x256x128,uint16,1x1x1.5 --downsample 2");
+    command.footer = "Example: half the resolution of voxels without a header\n"
+                     "  slabcast info head.raw --raw 256x256x128,uint16,1x1x1.5 --downsample 2";
 }
 
 } // namespace slabcast

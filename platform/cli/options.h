@@ -27,8 +27,6 @@ struct SceneOptions {
     double fovDegrees = 40.0;
     std::optional<double> stereoIpdMm;
     Settings settings;
-    SkipOptions skip; // its structure is settings.skip where that is set
-    SkipBuilder skipBuilder = SkipBuilder::Auto;
     std::optional<glm::dvec3> background = glm::dvec3(0.0); // sRGB-encoded; none: transparent
 };
 
@@ -84,14 +82,15 @@ struct EditOptions : SceneOptions {
     bool verify = false;
 };
 
-// Each binds the options of one command, with its help; values that do not parse throw
-// CLI::ParseError. `options` must outlive the parsing.
-void bindRender(CLI::App& command, RenderOptions& options);
-void bindSweep(CLI::App& command, SweepOptions& options);
-void bindStability(CLI::App& command, StabilityOptions& options);
-void bindError(CLI::App& command, ErrorOptions& options);
-void bindSkipbench(CLI::App& command, SkipbenchOptions& options);
-void bindEdit(CLI::App& command, EditOptions& options);
-void bindInfo(CLI::App& command, InputOptions& options);
+struct Command;
+
+// Each binds the options of one command, with its help. `options` must outlive the parsing.
+void bindRender(Command& command, RenderOptions& options);
+void bindSweep(Command& command, SweepOptions& options);
+void bindStability(Command& command, StabilityOptions& options);
+void bindError(Command& command, ErrorOptions& options);
+void bindSkipbench(Command& command, SkipbenchOptions& options);
+void bindEdit(Command& command, EditOptions& options);
+void bindInfo(Command& command, InputOptions& options);
 
 } // namespace slabcast

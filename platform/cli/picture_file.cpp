@@ -7,14 +7,17 @@
 
 namespace slabcast {
 
+bool isPictureName(const std::filesystem::path& path) {
+    return path.extension() == ".png" || path.extension() == ".exr";
+}
+
 Result<bool> pictureIsEncoded(const std::filesystem::path& path) {
-    const std::string ending = path.extension().string();
-    if (ending != ".png" && ending != ".exr") {
+    if (!isPictureName(path)) {
         return fail(ErrorCode::InvalidArgument,
                     path.string() +
                         ": pictures are written as .png or .exr: give a name that ends so");
     }
-    return checkWritable(path).map([&] { return ending == ".png"; });
+    return checkWritable(path).map([&] { return path.extension() == ".png"; });
 }
 
 Result<void> savePicture(const std::filesystem::path& path, glm::ivec2 size,

@@ -9,6 +9,9 @@
 
 namespace slabcast {
 
+/// Whether the name ends as pictures' do: .png or .exr.
+bool isPictureName(const std::filesystem::path& path);
+
 /// Whether the ending is one that savePicture() knows, and a file can be written there. To be asked
 /// before the work. Fails: InvalidArgument, FileUnwritable.
 Result<bool>

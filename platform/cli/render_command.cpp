@@ -73,13 +73,6 @@ Result<bool> checkOutputs(const RenderOptions& options) {
         if (const Result<void> sound = checkWritable(options.statsFile); !sound) {
             return tl::unexpected(sound.error());
         }
-        if (std::filesystem::absolute(options.statsFile).lexically_normal() ==
-            std::filesystem::absolute(options.output).lexically_normal()) {
-            return fail(
-                ErrorCode::InvalidArgument,
-                options.statsFile +
-                    ": is named for both picture and statistics; give --stats another name");
-        }
     }
     return pictureIsEncoded(options.output);
 }
@@ -117,8 +110,8 @@ Result<Drawing> drawAll(Stage& stage, const FramePlan& plan, const RenderOptions
     return drawing;
 }
 
-Result<void> writeAll(Stage& stage, const FramePlan& plan, const RenderOptions& options,
-                      const Drawing& drawing) {
+Result<void> writeAll(Stage& stage, const FramePlan& plan, const Settings& settings,
+                      const RenderOptions& options, const Drawing& drawing) {
     const auto& [turn, costs, error] = drawing;
     if (Result<void> saved =
             savePicture(options.output, options.size, costs ? costs->pixels : turn.firstPicture,
@@ -133,7 +126,8 @@ Result<void> writeAll(Stage& stage, const FramePlan& plan, const RenderOptions& 
         return {};
     }
     const FrameFindings findings{turn.frameMs, error, costs ? &*costs : nullptr};
-    return writeFileAtomically(options.statsFile, frameReport(stage, plan, findings, runOf("")));
+    return writeFileAtomically(options.statsFile,
+                               frameReport(stage, plan, settings, findings, runOf("")));
 }
 
 } // namespace
@@ -150,8 +144,9 @@ Result<void> renderCommand(const RenderOptions& given) {
         return tl::unexpected(opened.error());
     }
     Stage& stage = opened->stage;
+    const Result<Settings> settings = settingsFor(stage, options);
     const Result<FramePlan> plan =
-        settingsFor(stage, options).and_then([&](const Settings& s) { return stage.decide(s); });
+        settings.and_then([&](const Settings& s) { return stage.decide(s); });
     if (!plan) {
         return tl::unexpected(plan.error());
     }
@@ -162,7 +157,7 @@ Result<void> renderCommand(const RenderOptions& given) {
         explain(*plan, stage.info(), stage.scene());
     }
     return drawAll(stage, *plan, options, *encoded).and_then([&](const Drawing& drawing) {
-        return writeAll(stage, *plan, options, drawing);
+        return writeAll(stage, *plan, *settings, options, drawing);
     });
 }
 

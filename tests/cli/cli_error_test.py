@@ -285,7 +285,8 @@ class Accuracy(CliTest):
             table.write_text('{"version": 1, "rows": [{"volume": 3}]}')
         self.write("p.png", "a picture")
         target = ("render", "phantom:marschner-lobb:32", "-o", "p.png", "--target-error", "1e-9")
-        self.fails(*target, env=self.env, cause="reaches an RMSE of 1e-09: the best is", remedy="slabcast error")
+        self.fails(*target, env=self.env, cause="reaches an RMSE of 1e-09: the best is", remedy="slabcast error",
+                   status=2)
         self.fails(*target, env={"XDG_CACHE_HOME": str(self.measured / "none")}, cause="no errors were measured",
                    remedy="slabcast error")
         self.fails(*target, env={"XDG_CACHE_HOME": str(bad)}, cause="error-table-.*no table", remedy="delete it")

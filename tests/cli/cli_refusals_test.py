@@ -47,16 +47,20 @@ class BadVolumes(CliTest):
 
     def test_layouts_of_plain_voxels(self):
         self.write("v.raw", files.ramp()[:100])
-        cases = (("8x8x8,uint8,1x1x1", "has 100 bytes.* take 512", "correct the layout"),
-                 ("4x4x4,uint8,1x1x1", "has 100 bytes.* take 64", "correct the layout"),
-                 ("8x8x8", "'8x8x8'", "256x256x128"),
-                 ("8x8,uint8,1x1x1", "8x8", "three|256x256x128"),
-                 ("8x0x8,uint8,1x1x1", "0", "at least"),
-                 ("8x8x8,uint12,1x1x1", "uint12", "uint8"),
-                 ("8x8x8,uint8,1x0x1", "spacing", "correct|positive"),
-                 ("8x8x8,uint8,1xnanx1", "spacing", "correct|positive"),
-                 ("2000000x2000000x2000000,uint8,1x1x1", "8000000000000000000", "correct the layout"))
-        self.renders_fail([(("v.raw", "--raw", layout), cause, remedy) for layout, cause, remedy in cases])
+        def renders(cases):
+            return [(("v.raw", "--raw", layout), cause, remedy) for layout, cause, remedy in cases]
+        self.renders_fail(renders((
+            ("8x8x8,uint8,1x1x1", "has 100 bytes.* take 512", "correct the layout"),
+            ("2000000x2000000x2000000,uint8,1x1x1", "8000000000000000000", "correct the layout"))))
+        example = "as 256x256x128,uint16,1x1x1.5"
+        self.renders_fail(renders((
+            ("4x4x4,uint8,1x1x1", "has 100 bytes.* take 64", "correct the layout"),
+            ("8x8x8", "--raw: .*'8x8x8'", example),
+            ("8x8,uint8,1x1x1", "--raw: .*2 dimensions where a volume has three", example),
+            ("8x0x8,uint8,1x1x1", "--raw: .*has 0 voxels", "at least one"),
+            ("8x8x8,uint12,1x1x1", "--raw: .*uint12", "uint8"),
+            ("8x8x8,uint8,1x0x1", "--raw: .*spacing", "positive"),
+            ("8x8x8,uint8,1xnanx1", "--raw: .*spacing", "positive"))), status=2)
 
     def test_places_without_a_volume(self):
         (self.folder / "empty").mkdir()
@@ -76,7 +80,8 @@ class BadVolumes(CliTest):
         self.assertIn("1.2.3.7", line)
         self.assertIn("1.2.3.8", line)
         self.assertRegex(self.succeeds("info", "head", "--series", "1.2.3.8"), "8 x 8 x 3, int16")
-        self.render_fails("head", "--series", "1.2.3.9", cause="no series 1.2.3.9", remedy="--series may be .*1.2.3.7")
+        self.render_fails("head", "--series", "1.2.3.9", cause="no series 1.2.3.9", remedy="--series may be .*1.2.3.7",
+                          status=2)
 
     def test_dicom_slice_that_is_cut_short(self):
         for z in range(3):
@@ -84,14 +89,14 @@ class BadVolumes(CliTest):
         self.render_fails("head", cause="head/1.dcm", remedy="again")
 
     def test_phantoms_that_cannot_be(self):
-        cases = (("phantom:nosuch", "'nosuch'", "marschner-lobb"),
-                 ("phantom:", "''", "marschner-lobb"),
-                 ("phantom:shells:0", "0", "at least one"),
-                 ("phantom:shells:-3", "'-3'", "give"),
-                 ("phantom:shells:2x2", "'2x2'", "give"),
-                 ("phantom:shells:many", "'many'", "give"),
-                 ("phantom:ramp:100000", "100000", "ask for 1024"))
-        self.renders_fail([((name,), cause, remedy) for name, cause, remedy in cases])
+        self.renders_fail([((name,), cause, remedy) for name, cause, remedy in (
+            ("phantom:nosuch", "'nosuch'", "marschner-lobb"),
+            ("phantom:", "''", "marschner-lobb"),
+            ("phantom:shells:-3", "'-3'", "give"),
+            ("phantom:shells:2x2", "'2x2'", "give"),
+            ("phantom:shells:many", "'many'", "give"))], status=2)
+        self.render_fails("phantom:shells:0", cause="0", remedy="at least one")
+        self.render_fails("phantom:ramp:100000", cause="100000", remedy="ask for 1024")
 
     def test_without_memory_for_the_voxels(self):
         self.fails("info", "phantom:ramp:1024", cause="out of memory", remedy="smaller", limit="ulimit -v 1048576")
@@ -110,6 +115,7 @@ class BadTransferFunctions(CliTest):
             "text": (tf({"value": "air"}), r"points\[0\]\.value", "number"),
             "unknown": (tf({}, gamma=2), "gamma", "known|remove|leave|name"),
             "unknown_below": (tf({"alpha": 0.5}), r"points\[0\].*alpha", "known|remove|leave|opacity"),
+            "unknown_unit": (tf({}, unit="Hu"), "unit: 'Hu' is not known", "known are HU, and range"),
             "unit": (tf({}, opacityUnitMm=0), "opacityUnitMm: 0 is outside", r"1e-06\.\.1000000"),
             "empty": (tf(), "points", "at least|one"),
             "list": ("[]", "object|points", "points|object|write"),
@@ -121,10 +127,24 @@ class BadTransferFunctions(CliTest):
         self.renders_fail([((PHANTOM, "--tf", name + ".json"), rf"{name}\.json: .*({cause})", remedy)
                            for name, (_, cause, remedy) in cases.items()])
 
+    def test_a_unit_that_is_not_the_volumes_is_said(self):
+        """A phantom's values have no unit. The picture is drawn all the same."""
+        self.write("hu.json", json.dumps({"unit": "HU", "points": [POINT, {**POINT, "value": 1}]}))
+        self.picture(PHANTOM, "--tf", "hu.json", *QUICK,
+                     notes=r"slabcast: hu\.json: its values are in HU, the volume's in no unit[^\n]*\n")
+        self.write("hu.nrrd", files.nrrd().replace(b"\n\n", b"\nunit:=HU\n\n", 1))
+        self.picture("hu.nrrd", "--tf", "hu.json", *QUICK)
+
+    def test_a_file_relative_to_the_data_draws_what_its_preset_draws(self):
+        presets = Path(__file__).resolve().parents[2] / "assets" / "transfer_functions"
+        for name in ("mr", "angio", "linear"):
+            self.assertEqual(self.picture("phantom:vessels:32", *QUICK, "--tf", presets / f"{name}.json"),
+                             self.picture("phantom:vessels:32", *QUICK, "--tf", name), name)
+
     def test_names_that_lead_nowhere(self):
         (self.folder / "folder.json").mkdir()
-        self.renders_fail([((PHANTOM, "--tf", "gold"), "'gold'", "ct-bone.*json"),
-                           ((PHANTOM, "--tf", "gold.json"), "gold.json", "check the path"),
+        self.render_fails(PHANTOM, "--tf", "gold", cause="--tf: 'gold' is not", remedy="ct-bone.*json", status=2)
+        self.renders_fail([((PHANTOM, "--tf", "gold.json"), "gold.json", "check the path"),
                            ((PHANTOM, "--tf", "folder.json"), "folder.json", "check|name")])
 
 
@@ -133,17 +153,19 @@ class BadOutputs(CliTest):
         self.write("file", "kept")
         (self.folder / "folder.png").mkdir()
         (self.folder / "full.png").symlink_to("/dev/full")
-        cases = (("-o", "--stats", "no/such/p.png", "no folder no/such", "make it"),
-                 ("-o", "--stats", "file/p.png", "no folder file", "make it"),
-                 ("-o", "--stats", "folder.png", "not a file", "name a file"),
-                 ("-o", "--stats", "full.png", "not a file", "name a file"),
-                 ("-o", "--stats", "p.jpg", "png or .exr", "name that ends"),
-                 ("-o", "--stats", "p", "png or .exr", "name that ends"),
-                 ("--stats", "-o", "no/s.json", "no folder no", "make it"),
-                 ("--stats", "-o", "folder.png", "not a file", "name a file"),
-                 ("--stats", "-o", "./good.png", "both", "another name"))
-        self.all_fail([(("render", PHANTOM, *QUICK, flag, name, other, "good.png"), f"{name}: .*{cause}", remedy)
-                       for flag, other, name, cause, remedy in cases])
+        def renders(cases):
+            return [(("render", PHANTOM, *QUICK, flag, name, other, "good.png"), f"{name}: .*{cause}", remedy)
+                    for flag, other, name, cause, remedy in cases]
+        self.all_fail(renders((("-o", "--stats", "no/such/p.png", "no folder no/such", "make it"),
+                               ("-o", "--stats", "file/p.png", "no folder file", "make it"),
+                               ("-o", "--stats", "folder.png", "not a file", "name a file"),
+                               ("-o", "--stats", "full.png", "not a file", "name a file"),
+                               ("--stats", "-o", "no/s.json", "no folder no", "make it"),
+                               ("--stats", "-o", "folder.png", "not a file", "name a file"))))
+        self.all_misused([(("render", PHANTOM, *QUICK, "-o", name), f"--output: '{name}' is not .*png or .exr")
+                          for name in ("p.jpg", "p")])
+        self.all_misused([(("render", PHANTOM, *QUICK, "-o", "good.png", "--stats", "./good.png"),
+                           "--stats: ./good.png .*both.*another name")])
 
     def test_disk_that_fills_up_while_writing(self):
         """A limit on the size of files stands in for it: writing fails at one block, once its signal is ignored."""

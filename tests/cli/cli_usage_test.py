@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
-from cli_case import PHANTOM, CliTest, main  # noqa: E402
+from cli_case import PHANTOM, QUICK, CliTest, main  # noqa: E402
 
 COMMANDS = ("render", "sweep", "error", "stability", "skipbench", "edit", "info", "device")
 
@@ -20,7 +20,7 @@ class BadUsage(CliTest):
             "--size": ("32", "0x5", "32x32x32", "99999x2"),
             "--planes": ("-1", "many", "1.5", "99999999999999999999"), "--layers": ("0",), "--frames": ("0",),
             "--camera": ("1,2", "nan,2,3", "1,2,inf", "1,2,-1"), "--fov": ("180", "nan"), "--stereo": ("-1", "nan"),
-            "--background": ("red", "+12345"), "--layer-spacing": ("0", "nan"), "--termination": ("0", "2", "nan"),
+            "--background": ("red", "+12345", "#12345", "##123456"), "--layer-spacing": ("0", "nan"), "--termination": ("0", "2", "nan"),
             "--skip": ("octopus",), "--skip-block": ("3",), "--downsample": ("0",), "--gpu-budget": ("nan",),
         }
         self.all_misused([(("render", PHANTOM, "-o", "p.png", flag, word), f"{flag}: '{re.escape(word)}' is not .+")
@@ -38,7 +38,7 @@ class BadUsage(CliTest):
                           (("error", PHANTOM, "--out", "d", "--classify", "post,best"), "--classify: 'post,best'"),
                           (("error", PHANTOM, "--out", "d", "--termination", ""), "--termination"),
                           (("render", PHANTOM, "-o", "p.png", "--target-error", "0.1", "--planes", "2"),
-                           "--planes excludes --target-error"),
+                           "--target-error: excludes --planes"),
                           (("render", PHANTOM, "-o", "p.png", "--verify", "--shade", "phong"), "--verify.*shading"),
                           (("render", PHANTOM, "-o", "p.png", "--target-error", "0.1", "--shade", "phong"),
                            "--target-error.*shading"),
@@ -47,6 +47,34 @@ class BadUsage(CliTest):
                           (("paint",), "paint"),
                           (("info",), "VOLUME is required"),
                           (("device", "2"), "2")))
+
+    def test_options_that_would_do_nothing(self):
+        """Each is refused by name, with what makes it idle."""
+        self.write("v.nrrd", "no volume; nothing reads it")
+        render, edit = ("render", PHANTOM, "-o", "p.png"), ("edit", PHANTOM, "--out", "d")
+        self.all_misused((
+            ((*render, "--layers", "9", "--layer-spacing", "2"), "--layers: excludes --layer-spacing"),
+            ((*render, "--planes", "2", "--layers-per-plane", "2"), "--planes: excludes --layers-per-plane"),
+            ((*render, "--frames", "5"), "--frames: does nothing without --stats"),
+            ((*render, "--heatmap-scale", "9"), "--heatmap-scale: does nothing without --heatmap"),
+            ((*render, "--heatmap", "layers", "--background", "none"), "--heatmap: excludes --background"),
+            ((*render, "--raw", "8x8x8,uint8,1x1x1"), f"--raw: does nothing beside {PHANTOM}"),
+            ((*render, "--series", "1.2"), f"--series: does nothing beside {PHANTOM}"),
+            (("info", "v.nrrd", "--series", "1.2"), "--series: does nothing beside v.nrrd"),
+            (("info", "v", "--raw", "8x8x8,uint8,1x1x1", "--series", "1.2"), "--raw: excludes --series"),
+            ((*render, "--partition-budget", "9"), "--partition-budget: is of partitioned; --skip is auto"),
+            ((*render, "--shade", "phong", "--classify", "preintegrated"), "pre-integrated .*shading"),
+            ((*edit, "--script", "s.json", "--tf", "mr"), "--script: excludes --tf"),
+            ((*edit, "--script", "s.json", "--interpolate", "mr,angio"), "--script: excludes --interpolate"),
+            ((*edit, "--script", "s.json", "--frames", "30"), "--script: excludes --frames"),
+            ((*edit, "--interpolate", "mr,angio", "--tf", "mr"), "--interpolate: excludes --tf"),
+            ((*edit, "--work", "3", "--skip", "bitfield-octree"), "--work: does nothing beside --skip bitfield-octree"),
+            ((*edit, "--quiet", "3", "--skip", "minmax-octree"), "--quiet: does nothing beside --skip minmax-octree"),
+        ))
+
+    def test_settings_that_only_the_volume_decides_are_bad_usage_too(self):
+        self.all_fail([(("render", PHANTOM, "-o", "p.png", "--size", "32x32", "--layers", "99", "--planes", "1", "--form",
+                         "unrolled"), "segments of 99 layers", "at most 64")], status=2)
 
     def test_no_command_answers_with_the_help(self):
         run = self.run_cli()
@@ -66,6 +94,22 @@ class Help(CliTest):
                     self.assertLessEqual(len(line), 100)
         self.assertIn("slabcast render phantom:", self.succeeds("--help"))
         self.assertIn("--termination", self.succeeds("--help-all"))
+
+    def test_every_setting_is_an_option_and_in_the_statistics(self):
+        """docs/settings.md lists the table; a unit test holds it to that."""
+        page = (Path(__file__).resolve().parents[2] / "docs" / "settings.md").read_text()
+        names = re.findall(r"(?m)^\| `([a-z-]+)` \|", page)
+        self.assertGreater(len(names), 20)
+        text = self.succeeds("render", "--help")
+        for name in names:
+            self.assertRegex(text, rf"(?m)^  --{name} ")
+        held = self.stats(PHANTOM, *QUICK)["settings"]
+        self.assertEqual(set(held), {name.replace("-", "_") for name in names})
+        self.assertEqual((held["layers"], held["planes"], held["jitter"], held["classify"]), (16, 4, False, "post"))
+
+    def test_a_colour_may_have_its_sign(self):
+        self.assertEqual(self.picture(PHANTOM, *QUICK, "--background", "#ff8000"),
+                         self.picture(PHANTOM, *QUICK, "--background", "ff8000"))
 
     def test_defaults_are_shown(self):
         text = " ".join(self.succeeds("render", "--help").split())
