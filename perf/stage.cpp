@@ -25,13 +25,6 @@ glm::dmat4 turned(double degrees, const BoundingSphere& sphere) {
            back;
 }
 
-/// Of full scale.
-double maxFilterError(const StageDevice& device, TexelFormat format) {
-    const auto test = std::find_if(device.formats.begin(), device.formats.end(),
-                                   [=](const TexelFormatTest& t) { return t.format == format; });
-    return test == device.formats.end() ? 0.0 : test->maxFilterError;
-}
-
 /// What the texels take where they are classified so. Fails: as checkFits() and forecastMemory().
 Result<MemoryForecast> checkMemory(const VolumeInfo& info, TexelFormat format,
                                    Classification classification, const StageDesc& desc,
@@ -44,7 +37,7 @@ Result<MemoryForecast> checkMemory(const VolumeInfo& info, TexelFormat format,
 
 } // namespace
 
-Result<Stage> Stage::open(StageDevice device, Volume volume, const VolumeStatistics& statistics,
+Result<Stage> Stage::open(Device device, Volume volume, const VolumeStatistics& statistics,
                           StageDesc desc, Watcher watcher) {
     VolumeInfo info{.name = volume.name,
                     .type = volume.type,
@@ -53,15 +46,15 @@ Result<Stage> Stage::open(StageDevice device, Volume volume, const VolumeStatist
                     .spacingMm = volume.geometry.spacingMm,
                     .bytes = static_cast<std::int64_t>(volume.voxels.size()),
                     .modality = likelyModality(volume, statistics)};
-    const TexelFormat format = chooseTexelFormat(volume.type, statistics, desc.exactTexels,
-                                                 device.formats, &info.formatReason);
+    const TextureChoice choice = device.texturesFor(volume.type, statistics, desc.exactTexels);
+    info.formatReason = choice.reason;
     const Result<MemoryForecast> forecast =
-        checkMemory(info, format, desc.settings.classification, desc, device.caps);
+        checkMemory(info, choice.texels, desc.settings.classification, desc, device.caps());
     if (!forecast) {
         return tl::unexpected(forecast.error());
     }
     info.forecast = *forecast;
-    Result<Renderer> renderer = Renderer::create(device.caps);
+    Result<Renderer> renderer = Renderer::create(device);
     if (!renderer) {
         return tl::unexpected(renderer.error());
     }
@@ -69,8 +62,11 @@ Result<Stage> Stage::open(StageDevice device, Volume volume, const VolumeStatist
     if (desc.keepValues) {
         values = encodeTexels(volume, statistics, TexelFormat::R32fExact);
     }
-    Scene scene = Scene::create(std::move(volume), format, maxFilterError(device, format));
-    Stage stage(std::move(device), std::move(desc), std::move(watcher), std::move(scene),
+    Result<Scene> scene = Scene::create(std::move(volume), choice);
+    if (!scene) {
+        return tl::unexpected(scene.error());
+    }
+    Stage stage(std::move(device), std::move(desc), std::move(watcher), std::move(*scene),
                 std::move(*renderer));
     stage.info_ = std::move(info);
     stage.values_ = std::move(values);
@@ -83,65 +79,44 @@ Result<Stage> Stage::open(StageDevice device, Volume volume, const VolumeStatist
 
 Result<void> Stage::setLook(TransferFunction tf, Classification classification) {
     const ProgressLine line(watcher_, "finding what the transfer function makes visible");
-    const Settings& s = desc_.settings;
-    Look look{.tf = std::move(tf), .space = s.space, .classification = classification};
-    if (s.shaded) {
-        look.shading = ShadingParameters{};
-    }
+    Look look{.tf = std::move(tf)};
     // Towards the eye: a baked head light stands where the eye is at the first frame.
     const glm::dmat3 rotation(viewFromModel(desc_.camera, scene().geometry().boundingSphere()));
     look.bakedLightDirection = glm::transpose(rotation) * glm::dvec3(0.0, 0.0, 1.0);
-    SkipOptions skip = desc_.skip;
-    skip.structure = s.skip.value_or(skip.structure);
-    if (s.tighten && skip.structure == SkipStructure::None) {
-        skip.structure = SkipStructure::Blocks; // for the planes alone
-    }
-    const SkipBuilder builder = desc_.skipBuilder;
-    const bool onGpu =
-        skip.structure != SkipStructure::None &&
-        (builder == SkipBuilder::Gpu || (builder == SkipBuilder::Auto && !device_.caps.isSoftware));
-    if (!onGpu) {
-        return scene_.setLook(look, skip, maxTableSize());
-    }
-    constexpr SkipOptions kNotYet{.structure = SkipStructure::None};
-    if (Result<void> set = scene_.setLook(look, kNotYet, maxTableSize()); !set) {
-        return set;
-    }
-    Result<void> built = renderer_.buildSkip(scene_, skip);
-    if (built || built.error().code != ErrorCode::DeviceUnsupported) {
-        return built;
-    }
-    if (watcher_.say) {
-        watcher_.say(built.error().detail);
-    }
-    return scene_.setLook(look, skip, maxTableSize());
-}
-
-int Stage::maxTableSize() const {
-    return static_cast<int>(std::min<std::int64_t>(4096, device_.caps.maxTextureSize));
+    Settings settings = desc_.settings;
+    settings.classification = classification;
+    settings.skipOptions = desc_.skip;
+    settings.skipBuilder = desc_.skipBuilder;
+    return scene_.setLook(std::move(look)).and_then([&] {
+        return renderer_.provide(scene_, needsOf(settings));
+    });
 }
 
 double Stage::filterErrorSampled() const {
     const TexelFormat format = scene_.texels().format;
-    return maxFilterError(device_, format) * fullScaleSampled(format);
+    return device_.filterErrorOfFullScale(format) * fullScaleSampled(format);
 }
 
 Result<Scene> Stage::variation(const TransferFunction& tf, const SkipOptions& skip) const {
     Scene varied = scene();
     Look look = varied.look();
     look.tf = tf;
-    if (Result<void> set = varied.setLook(look, skip, maxTableSize()); !set) {
+    Needs needs = *scene().provided();
+    needs.skip = skip;
+    Result<void> set =
+        varied.setLook(std::move(look)).and_then([&] { return varied.provide(needs); });
+    if (!set) {
         return tl::unexpected(set.error());
     }
     return varied;
 }
 
 Result<void> Stage::reclassify(Classification classification) {
-    if (scene().look().classification == classification) {
+    if (scene().provided()->classification == classification) {
         return {};
     }
     const Result<MemoryForecast> forecast =
-        checkMemory(info_, scene_.texels().format, classification, desc_, device_.caps);
+        checkMemory(info_, scene_.texels().format, classification, desc_, device_.caps());
     if (!forecast) {
         return tl::unexpected(forecast.error());
     }
@@ -154,17 +129,17 @@ Result<FramePlan> Stage::decide(const Settings& settings) {
     if (!settings.planes && !settings.layersPerPlane && scene().facts().anythingVisible) {
         const ProgressLine line(watcher_, "measuring ratios on this device");
         Result<std::vector<RatioMeasurement>> measured =
-            measureRatios(renderer_, scene(), settings, device_.caps, views(0.0));
+            measureRatios(renderer_, scene(), settings, device_.caps(), views(0.0));
         if (!measured) {
             return tl::unexpected(measured.error());
         }
         measurements = std::move(*measured);
     }
-    return slabcast::plan(scene().facts(), settings, device_.caps, measurements);
+    return slabcast::plan(scene().facts(), settings, device_.caps(), measurements);
 }
 
 Result<FramePlan> Stage::plan(const Settings& settings) const {
-    return slabcast::plan(scene().facts(), settings, device_.caps, {});
+    return slabcast::plan(scene().facts(), settings, device_.caps(), {});
 }
 
 Result<void> Stage::prepare(const FramePlan& plan) {

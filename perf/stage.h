@@ -6,17 +6,10 @@
 #include "core/draw/renderer.h"
 #include "core/gl/color_targets.h"
 #include "core/scene/scene.h"
-#include "core/scene/texel_format.h"
 #include "perf/volume_info.h"
 #include "perf/watcher.h"
 
 namespace slabcast {
-
-/// What a program found out about the GPU whose context is current.
-struct StageDevice {
-    gl::Caps caps;
-    std::vector<TexelFormatTest> formats;
-};
 
 /// A volume's look, where it is seen from and what its pictures are drawn into.
 struct StageDesc {
@@ -43,9 +36,9 @@ class Stage {
 public:
     /// Chooses the texel format, checks that what this classification uploads fits before anything
     /// is allocated on the GPU, builds the scene and applies the look. `statistics`: the volume's.
-    /// Fails: VolumeTooLarge, SizeOverflow, EmptyVolume, as Scene::setLook() and
-    /// Renderer::create().
-    static Result<Stage> open(StageDevice device, Volume volume, const VolumeStatistics& statistics,
+    /// Fails: VolumeTooLarge, SizeOverflow, EmptyVolume, as Scene::setLook(),
+    /// Renderer::provide() and Renderer::create().
+    static Result<Stage> open(Device device, Volume volume, const VolumeStatistics& statistics,
                               StageDesc desc, Watcher watcher = {});
 
     /// Classifies anew, under the same transfer function. Fails: as open().
@@ -89,8 +82,8 @@ public:
     std::vector<ViewTarget> views(double turnDegrees) const;
 
     const StageDesc& desc() const { return desc_; }
-    const gl::Caps& caps() const { return device_.caps; }
-    const std::vector<TexelFormatTest>& formats() const { return device_.formats; }
+    const Device& device() const { return device_; }
+    const gl::Caps& caps() const { return device_.caps(); }
     const Watcher& watcher() const { return watcher_; }
     const Scene& scene() const { return scene_; }
     const VolumeInfo& info() const { return info_; }
@@ -102,15 +95,14 @@ public:
     const Renderer& renderer() const { return renderer_; }
 
 private:
-    Stage(StageDevice device, StageDesc desc, Watcher watcher, Scene scene, Renderer renderer)
+    Stage(Device device, StageDesc desc, Watcher watcher, Scene scene, Renderer renderer)
         : device_(std::move(device)), desc_(std::move(desc)), watcher_(std::move(watcher)),
           scene_(std::move(scene)), renderer_(std::move(renderer)) {}
 
     Result<void> setLook(TransferFunction tf, Classification classification);
-    int maxTableSize() const;
     Result<double> drawOn(glm::vec4 clear, const FramePlan& plan, double turnDegrees);
 
-    StageDevice device_;
+    Device device_;
     StageDesc desc_;
     Watcher watcher_;
     Scene scene_;

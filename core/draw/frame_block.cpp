@@ -96,8 +96,8 @@ FrameBlock makeFrameBlock(const RayFrame& f, const Scene& scene, const FramePlan
     if (scene.skip().exists()) {
         fillSkip(block, scene.skip(), scene.geometry().dims);
     }
-    if (scene.look().shading) {
-        fillShading(block, *scene.look().shading, scene.geometry(), scene.texels().valueScale);
+    if (plan.variant.shaded) {
+        fillShading(block, scene.look().shading, scene.geometry(), scene.texels().valueScale);
     }
     block.counts.y = plan.layersPerPlane;
     block.jitter = {glm::ivec2(f.viewportCorner), 0, 0};

@@ -122,10 +122,6 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
 
-Result<Renderer> Renderer::create(const gl::Caps& caps) {
-    return create(Device(caps, {}));
-}
-
 Result<Renderer> Renderer::create(const Device& device) {
     return create(device, {});
 }

@@ -74,7 +74,6 @@ class Renderer {
 public:
     /// Fails: ShaderCompile. Thread: the device's context is current.
     static Result<Renderer> create(const Device& device);
-    static Result<Renderer> create(const gl::Caps& caps);
     /// For measuring alone: what the programs that it makes do otherwise.
     static Result<Renderer> create(const Device& device, const MeasuringText& measuring);
     Renderer(Renderer&&) noexcept;
@@ -99,7 +98,7 @@ public:
 
     /// Builds the look's skip structure on the GPU, in place of what the scene has; waits for the
     /// host's copy of it. Restores the GL state (gl::StateGuard). Fails: DeviceUnsupported where
-    /// the device lacks the capacity, and as buildSkipOnGpu(): Scene::setLook() builds on the CPU.
+    /// the device lacks the capacity, and as buildSkipOnGpu(): Scene::provide() builds on the CPU.
     Result<void> buildSkip(Scene& scene, const SkipOptions& options);
 
     /// Brings all that draw() needs up to date with scene, plan and views: textures, shaders, a

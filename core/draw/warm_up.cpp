@@ -58,10 +58,9 @@ Result<std::vector<FramePlan>> plansOf(const Scene& scene, Settings settings, co
 
 } // namespace
 
-Result<void> warmUpForEditing(Renderer& renderer, const Scene& scene, const Settings& settings,
+Result<void> warmUpForEditing(Renderer& renderer, const LiveScene& scene, const Settings& settings,
                               const gl::Caps& caps, std::span<const RatioMeasurement> measurements,
                               std::span<const ViewTarget> views) {
-    SLABCAST_EXPECTS(scene.live() != nullptr, scene.lookGeneration());
     const gl::StateGuard guard;
     gl::ColorTargets pixel;
     const bool eightBit =

@@ -81,12 +81,15 @@ TextureChoice Device::texturesFor(VoxelType type, const VolumeStatistics& statis
                                   bool exact) const {
     TextureChoice choice;
     choice.texels = chooseTexelFormat(type, statistics, exact, formats(), &choice.reason);
-    const auto test =
-        std::find_if(formats().begin(), formats().end(),
-                     [&](const TexelFormatTest& t) { return t.format == choice.texels; });
-    choice.filterErrorOfFullScale = test == formats().end() ? 0.0 : test->maxFilterError;
+    choice.filterErrorOfFullScale = filterErrorOfFullScale(choice.texels);
     choice.maxTableSize = static_cast<int>(std::min(kMaxTableSize, caps().maxTextureSize));
     return choice;
+}
+
+double Device::filterErrorOfFullScale(TexelFormat format) const {
+    const auto test = std::find_if(formats().begin(), formats().end(),
+                                   [=](const TexelFormatTest& t) { return t.format == format; });
+    return test == formats().end() ? 0.0 : test->maxFilterError;
 }
 
 void Device::log(const std::string& line) const {

@@ -74,6 +74,9 @@ public:
     TextureChoice texturesFor(VoxelType type, const VolumeStatistics& statistics,
                               bool exact = false) const;
 
+    /// Of a format's filter, as the self-test found it; 0 of one that was not tested.
+    double filterErrorOfFullScale(TexelFormat format) const;
+
     void log(const std::string& line) const;
 
 private:

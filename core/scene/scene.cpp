@@ -27,7 +27,7 @@ Result<void> checkTableSize(int most) {
 }
 
 Result<void> checkLight(const Look& look) {
-    const ShadingParameters s = look.shading.value_or(ShadingParameters{});
+    const ShadingParameters& s = look.shading;
     const double numbers[] = {s.ambient, s.diffuse, s.specular, s.shininess, s.gradientFloorPerMm};
     if (!std::all_of(std::begin(numbers), std::end(numbers),
                      [](double number) { return std::isfinite(number); })) {
@@ -69,13 +69,11 @@ struct Scene::State {
     int lookGeneration = 0;
 
     Result<void> provideLook(const Needs& needs);
-    void light();
     void buildTable();
     Result<void> needCodes();
     const TransferTable& servingTable() const {
         return preintegrated ? preintegrated->diagonal : table;
     }
-    double defaultGradientFloorPerMm() const;
     CellVisibility visibility() const; // of scalars. Contract: their codes were made
 };
 
@@ -126,6 +124,9 @@ Result<void> Scene::setLook(Look look) {
         return ok;
     }
     look.tf = std::move(*tf);
+    if (look.shading.gradientFloorPerMm <= 0.0) {
+        look.shading.gradientFloorPerMm = defaultGradientFloorPerMm();
+    }
     state_->look = std::move(look);
     state_->lookGeneration = nextGeneration();
     state_->provided.reset();
@@ -133,22 +134,7 @@ Result<void> Scene::setLook(Look look) {
     state_->preintegrated.reset();
     state_->classified.reset();
     state_->skip = noSkip();
-    state_->live.reset();
     return {};
-}
-
-Scene Scene::create(Volume volume, TexelFormat format, double filterErrorOfFullScale) {
-    return std::move(*create(std::move(volume), TextureChoice{format, filterErrorOfFullScale}));
-}
-
-Result<void> Scene::setLook(const Look& look, const SkipOptions& skip, int maxTableSize) {
-    if (Result<void> ok = checkTableSize(maxTableSize); !ok) {
-        return ok;
-    }
-    state_->maxTableSize = maxTableSize;
-    return setLook(look).and_then([&] {
-        return provide({look.classification, look.space, look.shading.has_value(), skip});
-    });
 }
 
 void Scene::State::buildTable() {
@@ -163,23 +149,12 @@ void Scene::State::buildTable() {
     }
 }
 
-/// Fills in what a lit look leaves open.
-void Scene::State::light() {
-    if (provided->shaded && !look.shading) {
-        look.shading.emplace();
-    }
-    if (look.shading && look.shading->gradientFloorPerMm <= 0.0) {
-        look.shading->gradientFloorPerMm = defaultGradientFloorPerMm();
-    }
-}
-
 /// Table and texels as the needs say. Light belongs to the texels that it is baked into.
 Result<void> Scene::State::provideLook(const Needs& needs) {
     const bool pre = needs.classification == Classification::Pre;
     if (provided && provided->classification == needs.classification &&
         provided->space == needs.space && (!pre || provided->shaded == needs.shaded)) {
         provided->shaded = needs.shaded;
-        light();
         return {};
     }
     if (look.tf.points.empty()) {
@@ -192,14 +167,11 @@ Result<void> Scene::State::provideLook(const Needs& needs) {
     skip = noSkip();
     lookGeneration = nextGeneration();
     provided = needs;
-    look.classification = needs.classification;
-    look.space = needs.space;
-    light();
     buildTable();
     if (pre) {
         ClassifySettings settings;
         if (needs.shaded) {
-            settings.light = BakedLight{look.bakedLightDirection, *look.shading};
+            settings.light = BakedLight{look.bakedLightDirection, look.shading};
         }
         classified = classify(*texels, geometry, servingTable(), settings);
     }
@@ -321,10 +293,6 @@ void Scene::releaseTexels() {
     state_->texels = std::make_shared<const Texels>(std::move(described));
 }
 
-int Scene::maxTableSize() const {
-    return state_->maxTableSize;
-}
-
 const std::string& Scene::name() const {
     return state_->volumeName;
 }
@@ -407,13 +375,9 @@ SceneFacts Scene::facts() const {
 }
 
 double Scene::defaultGradientFloorPerMm() const {
-    return state_->defaultGradientFloorPerMm();
-}
-
-double Scene::State::defaultGradientFloorPerMm() const {
     constexpr double kShareOfRangePerVoxel = 0.005;
-    return kShareOfRangePerVoxel * (statistics.max - statistics.min) /
-           geometry.smallestVoxelEdgeMm();
+    return kShareOfRangePerVoxel * (state_->statistics.max - state_->statistics.min) /
+           state_->geometry.smallestVoxelEdgeMm();
 }
 
 } // namespace slabcast

@@ -21,13 +21,11 @@ class LiveSkip;
 struct PreintegratedTable;
 struct SkipSource;
 
-/// How a volume shall look. What pictures are of, classification, space and whether they are lit,
-/// is asked for by Settings and built by provide(); here it says what was.
+/// What a volume is made of for the eye. How it is classified, composited and skipped through, and
+/// whether it is lit, is asked for by Settings and built by provide().
 struct Look {
     TransferFunction tf;
-    CompositingSpace space = CompositingSpace::Display;
-    Classification classification = Classification::Post;
-    std::optional<ShadingParameters> shading; // where the settings light it; none: usual ones
+    ShadingParameters shading; // where it is lit; without a gradient floor a usual one is taken
     glm::dvec3 bakedLightDirection{
         0.0, -1.0, 0.0}; // patient space, towards the light; for pre-classified texels
 };
@@ -53,11 +51,6 @@ public:
     /// `exact`: interpolated in float32 by the shader. Fails: as validated() also.
     static Result<Scene> create(Volume volume, const Device& device, bool exact = false);
 
-    static Scene create(Volume volume, TexelFormat format, double filterErrorOfFullScale);
-    /// setLook() and provide() in one, of what this look says.
-    Result<void> setLook(const Look& look, const SkipOptions& skip, int maxTableSize);
-    int maxTableSize() const;
-
     /// Replaces the look; what was provided under the last one is dropped. Cost: O(points).
     /// Fails: InvalidTransferFunction, InvalidArgument (shading or light that are no numbers); then
     /// nothing has changed.
@@ -79,15 +72,8 @@ public:
     using SkipBuild = std::function<Result<BuiltSkip>(const SkipSource& source)>;
     Result<void> buildSkip(const SkipBuild& build);
 
-    // As LiveScene's.
-    Result<void> startEditing(const LiveOptions& options = {});
-    Result<void> edit(TransferFunction tf);
-    LiveProgress work(double budgetMs);
-    void stopEditing();
-    std::vector<Scene> withEachServing() const;
-
-    /// Lets go of codes that structures are built from, 2 bytes a voxel: made again, in one pass,
-    /// when the next one is built.
+    /// Lets go of codes that structures are built from, 2 bytes a voxel; of 8-bit volumes they are
+    /// the texels. Made again, in one pass, when the next one is built.
     void releaseCodes();
     /// Lets go of the texels on the host, once a renderer has prepared them: drawing goes on, and
     /// so do other looks. What is made from them then fails with InvalidArgument: pre-classified
@@ -124,6 +110,12 @@ public:
 
 private:
     friend class LiveScene;
+
+    Result<void> startEditing(const LiveOptions& options);
+    Result<void> edit(TransferFunction tf);
+    LiveProgress work(double budgetMs);
+    void stopEditing();
+    std::vector<Scene> withEachServing() const;
 
     struct State;
     explicit Scene(std::unique_ptr<State> state);

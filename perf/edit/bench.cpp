@@ -28,8 +28,8 @@ Settings plain(Settings settings) {
 
 Result<EditBench> EditBench::open(const Stage& stage, const EditDesc& desc,
                                   const FramePlan& decided) {
-    Result<Renderer> policys = Renderer::create(stage.caps());
-    Result<Renderer> others = Renderer::create(stage.caps());
+    Result<Renderer> policys = Renderer::create(stage.device());
+    Result<Renderer> others = Renderer::create(stage.device());
     if (!policys || !others) {
         return tl::unexpected(policys ? others.error() : policys.error());
     }
@@ -52,11 +52,16 @@ Result<void> EditBench::makeScenes() {
         }
     }
     naive_ = std::move(*naive);
-    live_ = std::move(*edited);
-    octree_ = std::move(*octree);
     LiveOptions octreeAlone = live;
     octreeAlone.settled.structure = SkipStructure::None;
-    return live_.startEditing(live).and_then([&] { return octree_.startEditing(octreeAlone); });
+    Result<LiveScene> policys = LiveScene::start(std::move(*edited), live);
+    Result<LiveScene> octrees = LiveScene::start(std::move(*octree), octreeAlone);
+    if (!policys || !octrees) {
+        return tl::unexpected(policys ? octrees.error() : policys.error());
+    }
+    live_ = std::move(*policys);
+    octree_ = std::move(*octrees);
+    return {};
 }
 
 Result<void> EditBench::warmUp(const FramePlan& decided) {
@@ -70,7 +75,7 @@ Result<void> EditBench::warmUp(const FramePlan& decided) {
     Result<void> done = target_.resize(stage_->desc().size.x, stage_->desc().size.y, {format});
     for (Renderer* renderer : {&policysRenderer_, &othersRenderer_}) {
         done = done.and_then([&] {
-            return warmUpForEditing(*renderer, live_, settings_, stage_->caps(), {},
+            return warmUpForEditing(*renderer, *live_, settings_, stage_->caps(), {},
                                     stage_->views(0.0));
         });
     }
@@ -98,25 +103,25 @@ Result<void> EditBench::draw(Renderer& renderer, const Scene& scene, const Frame
 /// threads are cold, which the frame of the octree, being warmed, is not.
 Result<void> EditBench::drawLive(const EditFrame& frame, double turnDegrees, EditRow& row) {
     if (lastPlan_) {
-        if (Result<void> drawn = draw(policysRenderer_, live_, *lastPlan_, turnDegrees); !drawn) {
+        if (Result<void> drawn = draw(policysRenderer_, *live_, *lastPlan_, turnDegrees); !drawn) {
             return drawn;
         }
     }
     Stopwatch watch;
     if (frame.newTransfer) {
-        if (Result<void> edited = live_.edit(*frame.newTransfer); !edited) {
+        if (Result<void> edited = live_->edit(*frame.newTransfer); !edited) {
             return edited;
         }
     }
     row.editMs = watch.lapMs();
     row.progress =
-        live_.work(std::min(desc_->workBudgetMs, std::max(kLeastMs, kMostOfFrame * lastDrawMs_)));
+        live_->work(std::min(desc_->workBudgetMs, std::max(kLeastMs, kMostOfFrame * lastDrawMs_)));
     row.workMs = watch.lapMs();
-    const Result<FramePlan> plan = planOf(live_, settings_);
-    Result<void> done = plan ? policysRenderer_.prepare(live_, *plan, stage_->views(turnDegrees))
+    const Result<FramePlan> plan = planOf(*live_, settings_);
+    Result<void> done = plan ? policysRenderer_.prepare(*live_, *plan, stage_->views(turnDegrees))
                              : tl::unexpected(plan.error());
     row.prepareMs = watch.lapMs();
-    done = done.and_then([&] { return draw(policysRenderer_, live_, *plan, turnDegrees); });
+    done = done.and_then([&] { return draw(policysRenderer_, *live_, *plan, turnDegrees); });
     row.drawMs = lastDrawMs_ = watch.lapMs();
     row.frameMs = row.editMs + row.workMs + row.prepareMs + row.drawMs;
     if (done) {
@@ -128,20 +133,20 @@ Result<void> EditBench::drawLive(const EditFrame& frame, double turnDegrees, Edi
 
 Result<void> EditBench::drawOctree(const EditFrame& frame, double turnDegrees, EditRow& row) {
     Settings settings = settings_;
-    settings.skip = octree_.skip().options.structure;
+    settings.skip = octree_->scene().skip().options.structure;
     Result<void> done;
     if (frame.newTransfer) {
-        done = octree_.edit(*frame.newTransfer);
+        done = octree_->edit(*frame.newTransfer);
     }
-    const Result<FramePlan> plan = planOf(octree_, settings);
+    const Result<FramePlan> plan = planOf(*octree_, settings);
     done = plan ? done.and_then([&] {
-        return othersRenderer_.prepare(octree_, *plan, stage_->views(turnDegrees));
+        return othersRenderer_.prepare(*octree_, *plan, stage_->views(turnDegrees));
     })
                 : tl::unexpected(plan.error());
     std::vector<double> times;
     for (int k = -1; k < desc_->octreeFrames && done; ++k) { // -1 warms up
         Stopwatch watch;
-        done = draw(othersRenderer_, octree_, *plan, turnDegrees);
+        done = draw(othersRenderer_, *octree_, *plan, turnDegrees);
         if (k >= 0) {
             times.push_back(watch.lapMs());
         }
@@ -172,7 +177,11 @@ Result<void> EditBench::drawNaive(const EditFrame& frame, double turnDegrees, Ed
     if (frame.newTransfer && plan) {
         Look look = naive_.look();
         look.tf = *frame.newTransfer;
-        plan = naive_.setLook(look, naiveSkip_, naive_.maxTableSize()).and_then(prepared);
+        Needs needs = *naive_.provided();
+        needs.skip = naiveSkip_;
+        plan = naive_.setLook(std::move(look))
+                   .and_then([&] { return naive_.provide(needs); })
+                   .and_then(prepared);
     }
     if (!plan) {
         return tl::unexpected(plan.error());
@@ -210,14 +219,14 @@ Result<EditRow> EditBench::replay(const EditFrame& frame, double turnDegrees) {
     if (!done) {
         return tl::unexpected(done.error());
     }
-    if (const Result<FramePlan> plan = planOf(live_, settings_); plan) {
-        row.counters = policysRenderer_.countWork(live_, *plan, stage_->views(turnDegrees));
+    if (const Result<FramePlan> plan = planOf(*live_, settings_); plan) {
+        row.counters = policysRenderer_.countWork(*live_, *plan, stage_->views(turnDegrees));
     }
     return row;
 }
 
 EditBuilds EditBench::builds() const {
-    const LiveSkip& live = *live_.live();
+    const LiveSkip& live = live_->live();
     const auto built = [](const BuiltSkip& skip, double ms) {
         return EditBuild{skip.options.structure, skip.options.blockEdgeVoxels, ms, gpuBytes(skip)};
     };

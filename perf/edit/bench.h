@@ -5,6 +5,7 @@
 
 #include "core/draw/renderer.h"
 #include "core/gl/color_targets.h"
+#include "core/scene/live_scene.h"
 #include "core/scene/scene.h"
 #include "perf/edit/replay.h"
 #include "perf/edit/report.h"
@@ -50,7 +51,8 @@ private:
     double lastDrawMs_ = 0.0;           // by the policy
     std::optional<FramePlan> lastPlan_; // of what it drew last
     gl::ColorTargets target_;
-    Scene live_, octree_, naive_;
+    std::optional<LiveScene> live_, octree_;
+    Scene naive_;
 };
 
 } // namespace slabcast

@@ -60,7 +60,7 @@ json referenceKey(const Stage& stage, const RunInfo& run) {
             {"voxels", fingerprint(stage.values().data)},
             {"placement", placementKey(scene.geometry())},
             {"transfer function", transferKey(scene.look().tf)},
-            {"space", name(scene.look().space)},
+            {"space", name(scene.provided()->space)},
             {"camera", toJson(o.camera)},
             {"field of view", o.fovDegrees},
             {"size", {o.size.x, o.size.y}},
@@ -115,7 +115,7 @@ Result<void> makeReference(const Stage& stage, ErrorStore& store, ReportFolder& 
     }
     const glm::ivec2 size = stage.desc().size;
     return folder.savePicture(kReferencePicture, {size, shown(store.reference()->pixels, size,
-                                                              stage.scene().look().space)});
+                                                              stage.scene().provided()->space)});
 }
 
 std::optional<double> timeOf(const json& row) {

@@ -206,7 +206,7 @@ Result<json> ErrorRows::savePictures(const std::string& id,
         return folder_.savePicture(file, thumbnail(stage_.desc().size, pixels));
     };
     const auto failure = [](const Result<void>& result) { return tl::unexpected(result.error()); };
-    const CompositingSpace space = stage_.scene().look().space;
+    const CompositingSpace space = stage_.scene().provided()->space;
     if (Result<void> saved = save(thumbnailFile, shown(picture, stage_.desc().size, space));
         !saved) {
         return failure(saved);

@@ -156,7 +156,7 @@ SceneLabel labelOf(const Stage& stage) {
     const auto edge = [](int length) { return std::to_string(length); };
     return {stage.info().name + " " + edge(dims.x) + "x" + edge(dims.y) + "x" + edge(dims.z),
             scene.look().tf.name, fingerprint(std::as_bytes(std::span(content))),
-            scene.look().space};
+            scene.provided()->space};
 }
 
 bool hasUsualSettings(const StageDesc& desc) {

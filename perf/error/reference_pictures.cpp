@@ -34,7 +34,7 @@ std::vector<glm::dvec4> ofAllViews(const Stage& stage, Render render) {
 /// As the look's transfer function is meant.
 DiscreteTransfer exactTransfer(const Scene& scene) {
     const TransferFunction& tf = scene.look().tf;
-    switch (scene.look().classification) {
+    switch (scene.provided()->classification) {
     case Classification::Pre:
         return PreclassifiedExact{tf, scene.classified()->referenceLengthMm};
     case Classification::Preintegrated:
@@ -47,7 +47,7 @@ DiscreteTransfer exactTransfer(const Scene& scene) {
 
 /// As the GPU holds it.
 DiscreteTransfer heldTransfer(const Scene& scene) {
-    switch (scene.look().classification) {
+    switch (scene.provided()->classification) {
     case Classification::Pre:
         return scene.classified();
     case Classification::Preintegrated:
@@ -82,7 +82,7 @@ std::vector<glm::dvec4> continuousPicture(const Stage& stage) {
             renderContinuous({.texels = &stage.values(),
                               .geometry = stage.scene().geometry(),
                               .tf = stage.scene().look().tf,
-                              .space = stage.scene().look().space,
+                              .space = stage.scene().provided()->space,
                               .view = view,
                               .viewport = viewport,
                               .tolerance = kReferenceTolerance},
@@ -103,7 +103,7 @@ std::vector<glm::dvec4> discretePicture(const Stage& stage, const Lattice& latti
             {.texels = &stage.values(),
              .geometry = scene.geometry(),
              .transfer = kind == TransferKind::Table ? heldTransfer(scene) : exactTransfer(scene),
-             .space = scene.look().space,
+             .space = scene.provided()->space,
              .view = view,
              .viewport = viewport,
              .lattice = lattice});

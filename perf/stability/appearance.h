@@ -17,7 +17,7 @@ struct Appearance {
     Look look() const {
         Look look;
         look.tf = tf;
-        look.shading = shading;
+        look.shading = shading.value_or(ShadingParameters{});
         return look;
     }
     Needs needs(const SkipOptions& skip) const {

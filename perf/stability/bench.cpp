@@ -48,8 +48,7 @@ View orbitView(const Scene& scene, const OrbitCamera& camera, double fovDegrees,
 
 Result<Scene> Bench::scene(const Volume& volume, const Appearance& appearance,
                            const SkipOptions& skip, bool exact) const {
-    const TextureChoice choice =
-        Device(caps_, formats_).texturesFor(volume.type, computeStatistics(volume), exact);
+    const TextureChoice choice = device_.texturesFor(volume.type, computeStatistics(volume), exact);
     return Scene::create(volume, choice).and_then([&](Scene&& scene) -> Result<Scene> {
         if (Result<void> shown = show(scene, appearance, skip); !shown) {
             return tl::unexpected(shown.error());
@@ -59,7 +58,7 @@ Result<Scene> Bench::scene(const Volume& volume, const Appearance& appearance,
 }
 
 Result<FramePlan> Bench::plan(const Scene& scene, const Settings& settings) const {
-    return slabcast::plan(scene.facts(), settings, caps_, {});
+    return slabcast::plan(scene.facts(), settings, caps(), {});
 }
 
 Result<Drawn> Bench::draw(const Scene& scene, const Settings& settings, const View& view,

@@ -41,9 +41,8 @@ struct Drawn {
 /// What all cases draw with, and where they are written down. One GL context, current throughout.
 class Bench {
 public:
-    Bench(Renderer& renderer, const gl::Caps& caps, std::vector<TexelFormatTest> formats,
-          bool reduced)
-        : renderer_(renderer), caps_(caps), formats_(std::move(formats)), reduced_(reduced) {}
+    Bench(Renderer& renderer, Device device, bool reduced)
+        : renderer_(renderer), device_(std::move(device)), reduced_(reduced) {}
 
     /// Fewer sizes, views and repetitions, for test runs. Bounds are never others.
     bool reduced() const { return reduced_; }
@@ -74,14 +73,13 @@ public:
     void setWatcher(std::function<void(const Case&)> watcher) { watcher_ = std::move(watcher); }
 
     const std::vector<Case>& cases() const { return cases_; }
-    const gl::Caps& caps() const { return caps_; }
-    const std::vector<TexelFormatTest>& formats() const { return formats_; }
+    const Device& device() const { return device_; }
+    const gl::Caps& caps() const { return device_.caps(); }
     Renderer& renderer() { return renderer_; }
 
 private:
     Renderer& renderer_;
-    const gl::Caps& caps_;
-    std::vector<TexelFormatTest> formats_;
+    Device device_;
     bool reduced_;
     gl::ColorTargets target_;
     std::vector<Case> cases_;

@@ -158,11 +158,11 @@ void recordPictures(Bench& bench, const FrugalScene& setup, const FramePlan& pla
 /// Of the programs that a renderer built which drew nothing else.
 Result<gl::ActiveResources> resourcesOf(Bench& bench, const Scene& scene, const FramePlan& plan,
                                         const View& view, glm::ivec2 size) {
-    Result<Renderer> fresh = Renderer::create(bench.caps());
+    Result<Renderer> fresh = Renderer::create(bench.device());
     if (!fresh) {
         return tl::unexpected(fresh.error());
     }
-    Bench alone(*fresh, bench.caps(), bench.formats(), bench.reduced());
+    Bench alone(*fresh, bench.device(), bench.reduced());
     const Result<Drawn> drawn = alone.draw(scene, plan, view, size);
     return drawn ? Result<gl::ActiveResources>(fresh->resources(plan.variant))
                  : tl::unexpected(drawn.error());

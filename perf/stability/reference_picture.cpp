@@ -187,7 +187,7 @@ ReferencePicture::Layer ReferencePicture::postClassified(glm::dvec3 uvw, const R
 void ReferencePicture::shade(glm::dvec3& color, double& error, glm::dvec3 uvw,
                              const Ray& ray) const {
     const VolumeGeometry& geometry = scene_.geometry();
-    const ShadingParameters& light = *scene_.look().shading;
+    const ShadingParameters& light = scene_.look().shading;
     glm::dvec3 perUvw(0.0);
     double differenceError = 0.0;
     for (int k = 0; k < 3; ++k) {

@@ -9,7 +9,7 @@ Result<void> deviceCommand() {
     if (!session) {
         return tl::unexpected(session.error());
     }
-    const gl::Caps& caps = session->caps;
+    const gl::Caps& caps = session->device.caps();
     fmt::print("{}\n  vendor     {}\n  driver     {}\n  context    {}\n", caps.renderer,
                caps.vendor, caps.driver, session->context.description());
     fmt::print("  software   {}\n", caps.isSoftware ? "yes: its times are not a headset's" : "no");
@@ -30,7 +30,7 @@ Result<void> deviceCommand() {
         fmt::print("  {:<3} {}\n", feature.has ? "yes" : "no", feature.what);
     }
     fmt::print("texel formats, by drawing and reading back:\n");
-    for (const TexelFormatTest& test : session->formats) {
+    for (const TexelFormatTest& test : session->device.formats()) {
         fmt::print("  {:<12} {:<9} filter error {:.3g}, fetch error {:.3g}: {}\n",
                    name(test.format), test.usable ? "usable" : "unusable", test.maxFilterError,
                    test.maxFetchError, test.reason);
@@ -43,7 +43,7 @@ Result<void> deviceCommand() {
         for (const bool exact : {false, true}) {
             std::string reason;
             const TexelFormat format =
-                chooseTexelFormat(type, ct, exact, session->formats, &reason);
+                chooseTexelFormat(type, ct, exact, session->device.formats(), &reason);
             fmt::print("  {:<6} {:<8} {:<12} {}\n", name(type), exact ? "--exact" : "",
                        name(format), reason);
         }

@@ -41,8 +41,7 @@ Result<Stage> openStage(const Session& session, const InputOptions& input, const
         return tl::unexpected(chosen.error());
     }
     desc.tf = std::move(*chosen);
-    return Stage::open({session.caps, session.formats}, std::move(*volume), statistics,
-                       std::move(desc), terminal());
+    return Stage::open(session.device, std::move(*volume), statistics, std::move(desc), terminal());
 }
 
 Result<OpenStage> openStage(const SceneOptions& options) {

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/gl/api.h"
 #include "core/volume/downsample.h"
 #include "core/volume/phantoms.h"
 #include "core/volume/resample.h"
+#include "platform/cli/progress.h"
 #include "platform/io/load_volume.h"
 
 namespace slabcast {
@@ -17,16 +17,14 @@ Result<Session> openSession() {
     if (!context) {
         return tl::unexpected(context.error());
     }
-    if (Result<void> loaded = gl::loadApi(context->getProc()); !loaded) {
-        return tl::unexpected(loaded.error());
-    }
     const char* mask = std::getenv("SLABCAST_MASK_EXTENSIONS");
-    Result<gl::Caps> caps = gl::queryCaps(gl::parseExtensionMask(mask == nullptr ? "" : mask));
-    if (!caps) {
-        return tl::unexpected(caps.error());
+    Result<Device> device = Device::open(
+        context->getProc(),
+        {.maskedExtensions = gl::parseExtensionMask(mask == nullptr ? "" : mask), .log = say});
+    if (!device) {
+        return tl::unexpected(device.error());
     }
-    std::vector<TexelFormatTest> formats = selfTestTexelFormats(*caps);
-    return Session{std::move(*context), std::move(*caps), std::move(formats)};
+    return Session{std::move(*context), std::move(*device)};
 }
 
 Result<Volume> openVolume(const InputOptions& options) {

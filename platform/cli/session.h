@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/gl/caps.h"
-#include "core/scene/texel_format.h"
+#include "core/scene/device.h"
 #include "core/volume/volume.h"
 #include "platform/egl/egl_context.h"
 
@@ -14,8 +13,7 @@ namespace slabcast {
 /// A headless context and what it can do.
 struct Session {
     EglContext context;
-    gl::Caps caps;
-    std::vector<TexelFormatTest> formats;
+    Device device;
 };
 
 /// Extensions named in SLABCAST_MASK_EXTENSIONS behave as absent.

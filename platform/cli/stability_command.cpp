@@ -12,11 +12,11 @@ Result<void> stabilityCommand(const StabilityOptions& options, const std::string
     if (!session) {
         return tl::unexpected(session.error());
     }
-    Result<Renderer> renderer = Renderer::create(session->caps);
+    Result<Renderer> renderer = Renderer::create(session->device);
     if (!renderer) {
         return tl::unexpected(renderer.error());
     }
-    stability::Bench bench(*renderer, session->caps, session->formats, options.reduced);
+    stability::Bench bench(*renderer, session->device, options.reduced);
     return stability::measure(bench, options.family, runOf(command), folder, terminal())
         .and_then([&] {
             return folder.makePage("stability_report.py", "stability.json and stability.csv");

@@ -15,7 +15,7 @@ constexpr glm::ivec2 kSize(16, 16);
 
 class StabilityTest : public test::RenderTest {
 protected:
-    Bench bench() { return {renderer(), caps(), formats(), true}; }
+    Bench bench() { return {renderer(), device(), true}; }
 
     /// 8 mm of one material, of which 1 mm lets 0.7 through.
     static Volume box() {
