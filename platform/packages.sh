@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian or Ubuntu packages that a step needs, and only what is missing.
-# usage: platform/packages.sh GROUP...        groups: build test demo
+# Where another package manager is at work, waits for it.
+# usage: platform/packages.sh GROUP...        groups: build test demo compilers docs
 set -euo pipefail
 
 # group, package, why
@@ -27,7 +28,12 @@ test  libgtest-dev           unit tests
 test  librapidcheck-dev      property tests
 test  glslang-tools          checks every shader variant against the specification
 demo  invesalius-examples    the skull: a CT as DICOM
-demo  mricron-data           a head: MR as NIfTI"
+demo  mricron-data           a head: MR as NIfTI
+compilers clang-14           what Android's NDK compiles with
+compilers libc++-14-dev      its standard library
+compilers libc++abi-14-dev   what that builds upon
+compilers emscripten         the compiler for browsers
+docs  doxygen                the reference of the public headers"
 
 isInstalled() { dpkg-query --show --showformat='${db:Status-Status}\n' "$1" 2>/dev/null | grep -qx installed; }
 
@@ -43,8 +49,25 @@ asRoot() {
 }
 
 refuse() {
-    echo "packages: $1; groups: build test demo" >&2
+    echo "packages: $1; groups: build test demo compilers docs" >&2
     exit 2
+}
+
+# apt-get waits for the lock of dpkg if told to, and for that of the package lists never.
+readonly lockSeconds=600
+updateLists() {
+    local end=$((SECONDS + lockSeconds)) said=""
+    while true; do
+        said=$(asRoot env LC_ALL=C apt-get update -q 2>&1) && break
+        if [[ $said != *"Could not get lock"* || $SECONDS -ge $end ]]; then
+            echo "$said" >&2
+            # A third party's list that cannot be fetched is no reason to stop: the lists at hand may do.
+            echo "packages: going on with the package lists at hand" >&2
+            return
+        fi
+        echo "packages: another package manager reads its lists; waiting" >&2
+        sleep 2
+    done
 }
 
 main() {
@@ -66,9 +89,9 @@ main() {
     done <<<"$table"
     [[ ${#missing[@]} -gt 0 ]] || return 0
     echo "packages: installing ${missing[*]}"
-    # A third party's list that cannot be fetched is no reason to stop: the lists at hand may do.
-    asRoot apt-get update -q || echo "packages: going on with the package lists at hand" >&2
-    asRoot env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
+    updateLists
+    asRoot env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends \
+        -o DPkg::Lock::Timeout=$lockSeconds "${missing[@]}"
 }
 
 main "$@"
