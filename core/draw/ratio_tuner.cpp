@@ -19,14 +19,6 @@ constexpr int kTimedFrames = 3;
 /// after it, of shorter segments, are too.
 constexpr double kHopeless = 8.0;
 
-double drawMs(Renderer& renderer, const Scene& scene, const FramePlan& plan,
-              std::span<const ViewTarget> views) {
-    const Stopwatch watch;
-    (void)renderer.draw(scene, plan, views); // fails where a layer does, as the frame itself will
-    gl::Finish();
-    return watch.ms();
-}
-
 /// Viewports of a fraction of the size, each at the target's corner.
 std::vector<ViewTarget> shrunk(std::span<const ViewTarget> views) {
     std::vector<ViewTarget> small(views.begin(), views.end());
@@ -38,16 +30,17 @@ std::vector<ViewTarget> shrunk(std::span<const ViewTarget> views) {
 }
 
 /// Median of a few frames after one to warm up, or the first of them where it is hopeless.
-double medianMs(Renderer& renderer, const Scene& scene, const FramePlan& plan,
-                std::span<const ViewTarget> views, double bestMs) {
-    (void)drawMs(renderer, scene, plan, views); // compiles
-    const double second = drawMs(renderer, scene, plan, views);
+/// `drawMs` draws one and tells how long that took.
+template <class DrawMs>
+double medianMs(DrawMs drawMs, double bestMs) {
+    (void)drawMs(); // compiles
+    const double second = drawMs();
     if (second > kHopeless * bestMs) {
         return second;
     }
     std::vector<double> times{second};
     while (times.size() < kTimedFrames) {
-        times.push_back(drawMs(renderer, scene, plan, views));
+        times.push_back(drawMs());
     }
     std::sort(times.begin(), times.end());
     return times[times.size() / 2];
@@ -57,8 +50,10 @@ double medianMs(Renderer& renderer, const Scene& scene, const FramePlan& plan,
 
 Result<std::vector<RatioMeasurement>> measureRatios(Renderer& renderer, const Scene& scene,
                                                     const Settings& settings, const gl::Caps& caps,
-                                                    std::span<const ViewTarget> views) {
+                                                    std::span<const ViewTarget> views,
+                                                    const std::function<double()>& nowMs) {
     const gl::StateGuard guard;
+    const Stopwatch watch;
     gl::ColorTargets targets;
     std::vector<ViewTarget> small = shrunk(views);
     const bool encoded = settings.space == CompositingSpace::Display;
@@ -90,7 +85,13 @@ Result<std::vector<RatioMeasurement>> measureRatios(Renderer& renderer, const Sc
         if (Result<void> ready = renderer.prepare(scene, *candidate, small); !ready) {
             return tl::unexpected(ready.error());
         }
-        const double ms = medianMs(renderer, scene, *candidate, small, bestMs);
+        const auto drawMs = [&] {
+            const double begin = nowMs ? nowMs() : watch.ms();
+            (void)renderer.draw(scene, *candidate, small); // fails where the frame itself will
+            gl::Finish();
+            return (nowMs ? nowMs() : watch.ms()) - begin;
+        };
+        const double ms = medianMs(drawMs, bestMs);
         measurements.push_back({ratio, ms});
         bestMs = std::min(bestMs, ms);
         if (ms > kHopeless * bestMs) {

@@ -6,11 +6,13 @@ usage: cli_pictures_test.py SLABCAST [arguments of unittest]
 
 import csv
 import json
+import os
 import re
 import shlex
 import struct
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
@@ -73,7 +75,36 @@ class Pictures(CliTest):
     def test_turning_the_camera_changes_the_picture(self):
         self.assertNotEqual(self.picture(PHANTOM, *QUICK), self.picture(PHANTOM, *QUICK, "--camera", "-30,80,2"))
 
+    # What an option takes effect with; where a word needs another than its option does, the word is named.
+    BESIDE = {"--skip-block": "--skip blocks", "--skip-block 64": "--skip minmax-octree",
+              "--skip-bits": "--skip bitfield-octree", "--partitions": "--skip partitioned",
+              "--separate-minimum": "--skip partitioned", "--traversal": "--skip minmax-octree",
+              "--skip-builder": "--skip proximity", "--heatmap-scale": "--heatmap layers"}
+
     def test_every_word_of_every_option_draws(self):
+        text = self.succeeds("render", "--help")
+        given = re.findall(r"^  (--[\w-]+) ([\w-]+(?:\|[\w-]+)+)", text, re.MULTILINE)
+        words = [(option, word) for option, words in given for word in words.split("|") if not word.isupper()]
+        structures = re.search(r"--skip NAME +([^;]+);", text)
+        if structures:  # written as a list, for its length
+            names = structures[1].split(":")[-1].replace(",", " ").split()
+            words += [("--skip", name) for name in names]
+        self.assertGreater(len({option for option, _ in words}), 12)
+        self.assertLessEqual({("--lattice", "shells"), ("--skip", "bitfield-octree"), ("--order", "front-to-back"),
+                              ("--classify", "preintegrated"), ("--skip-block", "64")}, set(words))
+
+        def drawn(option, word):
+            file = f"{option}{word}.png"
+            beside = self.BESIDE.get(f"{option} {word}", self.BESIDE.get(option, ""))
+            run = self.run_cli("render", PHANTOM, "-o", file, *QUICK, *beside.split(), option, word)
+            return run, self.folder / file
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            for (option, word), (run, file) in zip(words, pool.map(lambda pair: drawn(*pair), words)):
+                with self.subTest(option=option, word=word):
+                    self.assertEqual(run.returncode, 0, run.stderr)
+                    self.assertTrue(any(map(any, files.Png(file.read_bytes()).rows)))
+
+    def test_options_draw_together(self):
         for words in ("--lattice shells --form unrolled --shade phong --classify preclassified --skip-block 8",
                       "--exact --space linear --target rgba16f --form loop --termination off --skip proximity",
                       "--tighten off --skip none --shade phong --termination 0.5 --fov 90 --tf linear --camera 0,90,0"):

@@ -87,15 +87,8 @@ class UsualEditsTest(unittest.TestCase):
     def test_worst_frame_is_the_worst(self):
         worst = max(row["frameMs"] / row["octreeMs"] for row in self.rows)
         self.assertAlmostEqual(self.summary["worst_over_octree_frame"], worst, places=9)
-        self.assertGreaterEqual(self.summary["worst_of_single_replays"], 0)
         over = sum(row["frameMs"] > self.summary["budget_ms"] for row in self.rows)
         self.assertEqual(self.summary["frames_over_budget"], over)
-
-    def test_parts_are_of_the_frame(self):
-        for row in self.rows:
-            for part, ms in row["parts"].items():
-                self.assertLessEqual(0, ms, part)
-            self.assertEqual(row["edit"], row["parts"]["editMs"] > 1e-3)  # without an edit, two looks at a clock
 
     def test_hands_over_when_edits_pause(self):
         self.assertGreaterEqual(self.summary["hand_overs"], 1)
@@ -134,6 +127,17 @@ class ScriptTest(Folder):
             ("pause", False), ("pause", False), ("opacity", True), ("opacity", True), ("jump", True),
             ("jump", False), ("jump", False), ("interpolate", True), ("interpolate", True), ("interpolate", True),
             ("random", True), ("random", False), ("random", True), ("random", False)])
+
+    def test_a_single_replay_adds_up(self):
+        """Of several replays rows hold medians of each part, which need not."""
+        run = edit(*SMALL, "--interpolate", "linear,angio", "--frames", 8, "--replays", 1, "--out", self.out)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        report = self.report()
+        for row in report["rows"]:
+            self.assertEqual(set(row["parts"]), {"editMs", "workMs", "prepareMs", "drawMs"})
+            self.assertAlmostEqual(row["frameMs"], sum(row["parts"].values()), places=9)
+        worst = max(row["frameMs"] / row["octreeMs"] for row in report["rows"])
+        self.assertAlmostEqual(report["summary"]["worst_of_single_replays"], worst, places=9)
 
     def test_structures_are_as_asked(self):
         run = edit(*SMALL, "--interpolate", "linear,angio", "--frames", 20, "--skip", "minmax-octree", "--classify",

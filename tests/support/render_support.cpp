@@ -16,6 +16,15 @@ void appendVoxel(std::vector<std::byte>& bytes, double value) {
     bytes.insert(bytes.end(), raw, raw + sizeof voxel);
 }
 
+/// A target as the plan asks for, bound and cleared.
+gl::ColorTargets targetOf(const FramePlan& plan, glm::ivec2 size, glm::vec4 background) {
+    gl::ColorTargets target;
+    const GLenum format = plan.target == TargetFormat::Rgba8 ? GL_RGBA8 : GL_RGBA16F;
+    EXPECT_TRUE(target.resize(size.x, size.y, {format}).has_value());
+    target.begin(background);
+    return target;
+}
+
 } // namespace
 
 Volume makeVolume(glm::ivec3 dims, VoxelType type, const VoxelFormula& formula,
@@ -155,12 +164,13 @@ FramePlan RenderTest::decide(const Scene& scene, const Settings& settings) {
     return made.value_or(FramePlan{});
 }
 
+Picture RenderTest::cleared(const FramePlan& plan, glm::ivec2 size, glm::vec4 background) {
+    return {size, targetOf(plan, size, background).read()};
+}
+
 Picture RenderTest::draw(const Scene& scene, const FramePlan& plan, const View& view,
                          glm::ivec2 size, glm::vec4 background) {
-    gl::ColorTargets target;
-    const GLenum format = plan.target == TargetFormat::Rgba8 ? GL_RGBA8 : GL_RGBA16F;
-    EXPECT_TRUE(target.resize(size.x, size.y, {format}).has_value());
-    target.begin(background);
+    gl::ColorTargets target = targetOf(plan, size, background);
     const TargetEncoding encoding =
         plan.space == CompositingSpace::Display ? TargetEncoding::Encoded : TargetEncoding::Linear;
     const ViewTarget where{view, target.framebuffer(), {0, 0, size.x, size.y}, encoding};

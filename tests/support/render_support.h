@@ -34,6 +34,10 @@ private:
     std::mt19937_64 engine_;
 };
 
+/// Why a test of work is skipped where extensions are masked.
+inline constexpr const char* kCannotCount =
+    "work cannot be counted without GL_EXT_float_blend; CountersTest holds that this is said";
+
 using VoxelFormula = std::function<double(glm::ivec3)>;
 
 /// Voxels from a formula; U8, U16 or F32, one mm each where no spacing is given.
@@ -103,6 +107,8 @@ protected:
     Picture draw(const Scene& scene, const FramePlan& plan, const View& view, glm::ivec2 size,
                  glm::vec4 background = glm::vec4(0.0F));
     Picture draw(const Scene& scene, const Settings& settings, const View& view, glm::ivec2 size);
+    /// The same target where nothing is drawn.
+    Picture cleared(const FramePlan& plan, glm::ivec2 size, glm::vec4 background);
 };
 
 /// Every pixel within its bound and the blending's; at most 0.5 % of the pixels may graze the box.
