@@ -48,9 +48,11 @@ def room_of(path):
 
 
 def folder_of(path):
-    """What takes part in cycles: core's rooms, and the folders of everything else."""
-    room = room_of(path)
-    return room if within(path, "core") else str(Path(path).parent)
+    """What takes part in cycles: core's rooms and the folders of everything else; at a top, a file for itself."""
+    if within(path, "core"):
+        return room_of(path)
+    parent = Path(path).parent
+    return str(parent if "/" in str(parent) else Path(path).with_suffix(""))
 
 
 def may_include(room, path):
@@ -85,7 +87,10 @@ def includes_of(root):
             if file.suffix in (".h", ".cpp") and file.is_file():
                 for number, line in enumerate(file.read_text().splitlines(), 1):
                     if match := INCLUDE.match(line):
-                        yield file.relative_to(root).as_posix(), number, match[1], match[2]
+                        # An example's own header lies beside it.
+                        beside = top == "examples" and (file.parent / match[2]).exists()
+                        included = f"{top}/{match[2]}" if beside else match[2]
+                        yield file.relative_to(root).as_posix(), number, match[1], included
 
 
 def cycles(arrows):
@@ -168,7 +173,8 @@ class ArrowsTest(unittest.TestCase):
             ("core/slabcast.h", '"core/draw/renderer.h"'), ("core/gl/deep/a.h", '"core/gl/caps.h"'),
             ("core/base/a.h", "<algorithm>"), ("core/gl/a.h", "<GLES3/gl32.h>"),
             ("perf/a.cpp", "<nlohmann/json.hpp>"), ("platform/cli/a.cpp", '"perf/a.h"'),
-            ("platform/cli/b.cpp", "<fmt/format.h>"), ("examples/a.cpp", '"core/slabcast.h"')), [])
+            ("platform/cli/b.cpp", "<fmt/format.h>"), ("examples/a.cpp", '"core/slabcast.h"'),
+            ("examples/b.h", "<slabcast/slabcast.h>"), ("examples/c.cpp", '"b.h"')), [])
 
     def test_planted_cycles_are_found(self):
         self.assertEqual(

@@ -45,7 +45,7 @@ inline tl::unexpected<Error> fail(ErrorCode code, std::string detail) {
 }
 
 /// A breached contract: prints function and value, then aborts. For mistakes of the calling code,
-/// never for input.
+/// never for input. Tested by: contracts_test.cpp
 [[noreturn]] void contractBreach(const char* function, const char* condition, double value);
 
 #define SLABCAST_EXPECTS(condition, value)                                                         \

@@ -69,7 +69,7 @@ struct GpuMemory {
 
 /// Draws scenes. One GL context, one thread: every call needs the context current.
 /// prepare() may compile and upload, and so may take long; draw() only records GL commands and
-/// never waits.
+/// never waits. Tested by: renderer_gl_test.cpp, renderer_work_gl_test.cpp
 class Renderer {
 public:
     /// Fails: ShaderCompile. Thread: the device's context is current.

@@ -2,7 +2,7 @@
 
 namespace slabcast::gl {
 
-/// What the platform resolves names of GL's functions with (eglGetProcAddress and its like).
+/// Finds GL's functions by name: eglGetProcAddress or its like. Tested by: scene_gl_test.cpp
 using GetProc = void* (*)(const char*);
 
 } // namespace slabcast::gl

@@ -22,7 +22,7 @@ enum class BlendOrder : std::uint8_t { BackToFront, FrontToBack };
 const char* name(TargetFormat format);
 const char* name(BlendOrder order);
 
-/// What a user may ask for. Unset optionals are decided by the plan.
+/// What a user may ask for; what is unset the plan decides. Tested by: frame_plan_test.cpp
 struct Settings {
     Classification classification = Classification::Post;
     std::optional<SkipStructure> skip;

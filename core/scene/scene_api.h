@@ -33,7 +33,7 @@ struct Look {
 /// A volume under a transfer function, on the host: what the renderer's textures are made from and
 /// can be made from again. No GL. Not thread-safe; heavy steps use all cores inside. Copies share
 /// the texels and may have looks of their own. Its life: create, setLook(), provide() what a plan
-/// needs, draw; then any of the three again.
+/// needs, draw; then any of the three again. Tested by: scene_test.cpp, scene_gl_test.cpp
 class Scene {
 public:
     Scene(); // of no volume: to be assigned to

@@ -59,7 +59,7 @@ ValueBins binsOf(const SkipSource& source, const SkipOptions& options);
 BuiltSkip asBuilt(const SkipOptions& options, SkipData data, const CellVisibility& visibility);
 
 /// Builds on the CPU, on all cores. Fails: as check() and the structures' builders. Tested by:
-/// built_skip_test.cpp
+/// skip_equality_gl_test.cpp, scene_test.cpp
 Result<BuiltSkip> buildSkip(const SkipSource& source, const SkipOptions& options,
                             const CancelToken* cancel = nullptr);
 

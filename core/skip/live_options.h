@@ -6,7 +6,7 @@
 
 namespace slabcast {
 
-/// How empty space is skipped while a TF is edited.
+/// How empty space is skipped while a TF is edited. Tested by: live_skip_test.cpp
 struct LiveOptions {
     /// The structure that serves while the TF changes. It is built once and is exact under any TF:
     /// a bitfield octree, a min-max octree, or partitioned maps.

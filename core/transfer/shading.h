@@ -16,7 +16,7 @@ struct ShadingParameters {
 /// floor.
 double shadingWeight(const ShadingParameters& parameters, double gradientPerMm);
 
-/// What light that does not depend on the eye does to a colour: ambient + diffuse * |n.l|.
+/// Ambient + diffuse * |n.l|, which do not depend on the eye. Tested by: preclassified_test.cpp
 double diffuseLight(const ShadingParameters& parameters, double cosine);
 
 } // namespace slabcast

@@ -15,7 +15,7 @@ const char* name(LatticeKind kind);
 /// `total` layers of `spacingMm`, centred on the bounding sphere's centre. Layer i in [0, total)
 /// holds the offsets [i - total/2, i + 1 - total/2) in layers from the centre and is sampled in its
 /// middle. How the layers are dealt out to planes is not part of it: the ratio never moves a
-/// sample.
+/// sample. Tested by: lattice_test.cpp
 struct Lattice {
     LatticeKind kind = LatticeKind::Planar;
     int total = 0;
