@@ -8,7 +8,7 @@
 
 namespace slabcast {
 
-/// A list of at most so many, in place: nothing on the heap. Contract: not more are added.
+/// At most so many, in place, not on the heap. Contract: no more. Tested by: contracts_test.cpp
 template <class T, std::size_t most>
 class ShortList {
 public:

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/parallel.h"
-#include "core/plan/shader_variant.h"
+#include "core/base/short_list.h"
 #include "core/reference/continuous.h"
 #include "core/reference/discrete.h"
 #include "core/reference/picture_difference.h"
@@ -81,6 +81,11 @@ struct Contract {
 const Contract kBase[] = {
     {"parallelFor: expects grain > 0, got 0",
      [] { parallelFor(1, 0, [](std::int64_t, std::int64_t) {}); }},
+    {"add: expects size_ < most, got 2",
+     [] {
+         ShortList<int, 2> full{1, 2};
+         full.add(3);
+     }},
 };
 
 const Contract kVolume[] = {
@@ -91,9 +96,18 @@ const Contract kVolume[] = {
     {"encodeTexels: expects !volume.voxels.empty()",
      [] { encodeTexels(Volume{}, VolumeStatistics{}, TexelFormat::R8); }},
     {"encodeCodes: expects !texels.data.empty()", [] { encodeCodes(Texels{}); }},
-    {"valueAt: expects glm::all", [] { (void)Volume{.geometry = kGeometry}.valueAt({2, 0, 0}); }},
-    {"valueAt: expects glm::all", [] { (void)Volume{.geometry = kGeometry}.valueAt({0, -1, 0}); }},
-    {"decodedValue: expects glm::all", [] { (void)decodedValue(eightTexels(), {0, 0, 2}); }},
+    {"valueAt: expects glm::all",
+     [] {
+         (void)Volume{.geometry = kGeometry}.valueAt({2, 0, 0});
+     }},
+    {"valueAt: expects glm::all",
+     [] {
+         (void)Volume{.geometry = kGeometry}.valueAt({0, -1, 0});
+     }},
+    {"decodedValue: expects glm::all",
+     [] {
+         (void)decodedValue(eightTexels(), {0, 0, 2});
+     }},
 };
 
 const Contract kTransfer[] = {
@@ -128,11 +142,17 @@ const Contract kSkip[] = {
      [] { infoOf(nameless<SkipStructure>()); }},
     {"codeRange: expects !codes.codes.empty()", [] { codeRange(TexelCodes{}); }},
     {"valueBins: expects count >= 2 && count <= kMaxBins, got 1",
-     [] { valueBins(encodeCodes(eightTexels()), CodeRange{0, 1}, 1, false, std::nullopt); }},
+     [] {
+         valueBins(encodeCodes(eightTexels()), CodeRange{0, 1}, 1, false, std::nullopt);
+     }},
     {"valueBins: expects range.least <= range.most, got 1",
-     [] { valueBins(encodeCodes(eightTexels()), CodeRange{1, 0}, 2, false, std::nullopt); }},
+     [] {
+         valueBins(encodeCodes(eightTexels()), CodeRange{1, 0}, 2, false, std::nullopt);
+     }},
     {"valueBins: expects range.most < codes.lowSampled.size()",
-     [] { valueBins(TexelCodes{}, CodeRange{0, 1}, 2, false, std::nullopt); }},
+     [] {
+         valueBins(TexelCodes{}, CodeRange{0, 1}, 2, false, std::nullopt);
+     }},
     {"visibleBins: expects binOf.size() == visibility.reach.size()",
      [] {
          ValueBins bins = binsOf(2);
@@ -169,16 +189,21 @@ const Contract kSkip[] = {
          visibility.texels = &codes;
          (void)buildProximityCloud(visibility, {.dims = {3, 2, 2}}, 1);
      }},
-    {"octreeLayout: expects levels > 0", [] { octreeLayout({1, 1, 1}, 0, 8); }},
-    {"keptLevels: expects initialLevel >= 0, got -1", [] { keptLevels({1, 1, 1}, -1); }},
+    {"octreeLayout: expects levels > 0",
+     [] {
+         octreeLayout({1, 1, 1}, 0, 8);
+     }},
+    {"keptLevels: expects initialLevel >= 0, got -1",
+     [] {
+         keptLevels({1, 1, 1}, -1);
+     }},
     {"visibleNodes: expects level >= 0", [] { visibleNodes(Octree{}, NodeTest{}, -1); }},
 };
 
 const Contract kReference[] = {
     {"TransferRamps: expects !tf.points.empty()",
      [] { TransferRamps(TransferFunction{}, CompositingSpace::Display); }},
-    {"difference: expects !picture.empty()",
-     [] { difference({}, {}, CompositingSpace::Display); }},
+    {"difference: expects !picture.empty()", [] { difference({}, {}, CompositingSpace::Display); }},
     {"difference: expects !picture.empty() && picture.size() == reference.size(), got 1",
      [] {
          const std::vector<glm::dvec4> one(1);
