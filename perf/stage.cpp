@@ -85,8 +85,6 @@ Result<void> Stage::setLook(TransferFunction tf, Classification classification) 
     look.bakedLightDirection = glm::transpose(rotation) * glm::dvec3(0.0, 0.0, 1.0);
     Settings settings = desc_.settings;
     settings.classification = classification;
-    settings.skipOptions = desc_.skip;
-    settings.skipBuilder = desc_.skipBuilder;
     return scene_.setLook(std::move(look)).and_then([&] {
         return renderer_.provide(scene_, needsOf(settings));
     });

@@ -21,8 +21,6 @@ struct StageDesc {
 
     TransferFunction tf;
     Settings settings; // of which the look takes its part; plans may be of others
-    SkipOptions skip;  // its structure is settings.skip where that is set
-    SkipBuilder skipBuilder = SkipBuilder::Auto;
 
     bool exactTexels = false;                   // fetched and interpolated, not filtered
     std::optional<std::int64_t> gpuBudgetBytes; // for the volume's texture

@@ -76,7 +76,7 @@ json rowsKey(const Stage& stage, const ErrorDesc& desc, json key) {
                 {"lattice", name(s.lattice)},
                 {"form", nameOf(s.form)},
                 {"skip", s.skip ? name(*s.skip) : "auto"},
-                {"skip block", o.skip.blockEdgeVoxels},
+                {"skip block", o.settings.skipOptions.blockEdgeVoxels},
                 {"tighten", s.tighten},
                 {"quick", desc.quick},
                 {"frames", desc.frames}});

@@ -162,7 +162,7 @@ SceneLabel labelOf(const Stage& stage) {
 bool hasUsualSettings(const StageDesc& desc) {
     const auto othersOf = [](const StageDesc& d) {
         const Settings& s = d.settings;
-        return std::make_tuple(s.skip, s.tighten, s.lattice, s.form, d.skip, d.exactTexels);
+        return std::make_tuple(s.skip, s.tighten, s.lattice, s.form, s.skipOptions, d.exactTexels);
     };
     return othersOf(desc) == othersOf(StageDesc{});
 }

@@ -76,7 +76,7 @@ SkipOptions optionsOf(const Bench& bench, SkipStructure structure, int edge, int
             .blockEdgeVoxels = edge,
             .partitions = partitions,
             .separateMinimum = true,
-            .memoryBudgetBytes = bench.desc.stage.skip.memoryBudgetBytes};
+            .memoryBudgetBytes = bench.desc.stage.settings.skipOptions.memoryBudgetBytes};
 }
 
 double msOf(const BuildStages& stages) {

@@ -244,7 +244,7 @@ json conditionsOf(const Desc& desc) {
             {"classification", name(s.classification)},
             {"termination", s.termination ? json(*s.termination) : json("off")},
             {"framesPerRowAtMost", desc.frames},
-            {"partitionBudgetBytes", stage.skip.memoryBudgetBytes},
+            {"partitionBudgetBytes", stage.settings.skipOptions.memoryBudgetBytes},
             {"sizes", desc.sizes},
             {"quick", desc.quick}};
 }

@@ -21,7 +21,7 @@ std::vector<SkipOptions> usualStructures(const Desc& desc) {
         all.push_back({.structure = info.structure,
                        .partitions = kUsualPartitions,
                        .separateMinimum = info.structure == SkipStructure::Partitioned,
-                       .memoryBudgetBytes = desc.stage.skip.memoryBudgetBytes});
+                       .memoryBudgetBytes = desc.stage.settings.skipOptions.memoryBudgetBytes});
     }
     return all;
 }

@@ -13,8 +13,6 @@ StageDesc stageDescOf(const SceneOptions& o) {
                    .background = o.background,
                    .tf = {},
                    .settings = o.settings,
-                   .skip = o.settings.skipOptions,
-                   .skipBuilder = o.settings.skipBuilder,
                    .exactTexels = o.input.exact,
                    .keepValues = o.input.keepValues};
     if (o.input.gpuBudgetMib) {
