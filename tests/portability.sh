@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Compiles all of core and perf by one compiler, with every warning an error, and writes nothing.
-# usage: tests/portability.sh COMPILER [FLAG...]        compilers: gcc clang libc++ emscripten
-# Exit status: 0 where all compile, 1 where one does not, 77 where the compiler is not installed. BUILD: folder for
-# what Emscripten keeps, build/ if not set.
+# Compiles all of core and perf by one compiler, with every warning an error, and makes no objects.
+# usage: tests/portability.sh COMPILER FOLDER [FLAG...] [-- CORE_FLAG...]
+# COMPILER: gcc, clang, libc++ or emscripten. FOLDER: for what Emscripten keeps. CORE_FLAGs are for core alone.
+# Exit status: 0 where all compile, 1 where one does not, 2 on bad usage, 77 where the compiler is not installed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -23,9 +23,12 @@ firstOf() {
 compiles() { "$@" -x c++ -std=c++20 -fsyntax-only - <<<'#include <vector>' >/dev/null 2>&1; }
 
 main() {
-    local which=${1:?a compiler: gcc clang libc++ emscripten}
-    shift
-    local command
+    local which=${1:?a compiler: gcc clang libc++ emscripten} folder=${2:?a folder} flags=() command
+    shift 2
+    while [[ $# -gt 0 && $1 != -- ]]; do
+        flags+=("$1")
+        shift
+    done
     case $which in
     gcc) command=("$(firstOf g++-12 g++)") || skip "no g++" ;;
     clang) command=("$(firstOf clang++-14 clang++)") || skip "no clang++" ;;
@@ -35,7 +38,7 @@ main() {
         ;;
     emscripten)
         command=("$(firstOf em++)" -pthread -fno-exceptions -fno-rtti) || skip "no em++"
-        headersForEmscripten
+        headersForEmscripten "$folder/emscripten"
         ;;
     *)
         echo "portability: no compiler '$which'" >&2
@@ -43,18 +46,22 @@ main() {
         ;;
     esac
     echo "$which: $("${command[0]}" --version | head -n 1)"
-    # All that fail are shown: xargs goes on and fails at the end. An order that is not the folders' evens the batches.
-    find core perf -name '*.cpp' -print0 | sort -zR --random-source=<(yes) |
-        xargs -0 -n 8 -P "$(nproc)" "${command[@]}" -std=c++20 -fsyntax-only -I. "$@" -Werror
-    echo "$which: $(find core perf -name '*.cpp' | wc -l) sources compile"
+    check perf "${flags[@]}"
+    check core "${flags[@]}" "${@:2}"
+}
+
+# Every source of a folder by `command`, 8 a process. All that fail are shown: xargs goes on, and fails at the end.
+check() {
+    find "$1" -name '*.cpp' -print0 |
+        xargs -0 -n 8 -P "$(nproc)" "${command[@]}" -std=c++20 -fsyntax-only -I. "${@:2}" -Werror
+    echo "$which: $(find "$1" -name '*.cpp' | wc -l) sources of $1 compile"
 }
 
 # Emscripten sees no header of the system's own, so the header-only libraries are put where it looks. Its cache as
 # Debian installs it can only be read, so a copy of our own is made before compilers run side by side.
 headersForEmscripten() {
-    local folder=${BUILD:-build}/emscripten library
+    local folder=$1 library
     mkdir -p "$folder/include"
-    folder=$(cd "$folder" && pwd)
     for library in glm tl nlohmann; do
         ln -sfn "/usr/include/$library" "$folder/include/$library"
     done
