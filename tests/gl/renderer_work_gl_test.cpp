@@ -25,7 +25,7 @@ protected:
 TEST_F(CountersTest, WhereTargetsDoNotBlendItIsSaid) {
     gl::Caps masked = caps();
     masked.floatBlend = false;
-    Result<Renderer> made = Renderer::create(masked);
+    Result<Renderer> made = Renderer::create(Device(masked, formats(), {}));
     ASSERT_TRUE(made.has_value());
     const Scene scene =
         makeScene(constantVolume({8, 8, 8}, 5), {.tf = uniformTransfer(0.1, glm::dvec3(1.0))});
