@@ -18,6 +18,7 @@
 // it first (DeviceOptions::contract).
 
 #include "core/base/error.h"
+#include "core/base/executor.h"
 #include "core/draw/ratio_tuner.h"
 #include "core/draw/renderer_api.h"
 #include "core/draw/warm_up.h"

@@ -2,7 +2,8 @@
 
 #include <atomic>
 #include <cstdint>
-#include <functional>
+
+#include "core/base/function_ref.h"
 
 namespace slabcast {
 
@@ -10,11 +11,11 @@ namespace slabcast {
 using CancelToken = std::atomic<bool>;
 
 /// Calls `body(begin, end)` on disjoint ranges that cover [0, count), on all cores, and returns
-/// when all are done. Ranges hold about `grain` items and are handed out as threads fall free, so
-/// uneven work balances itself. Once `cancel` is set no further range starts; returns false then,
-/// else true. Cost: O(count/grain) hand-outs.
+/// when all are done: on executor(). Ranges hold about `grain` items and are handed out as threads
+/// fall free, so uneven work balances itself. Once `cancel` is set no further range starts; returns
+/// false then, else true. Cost: O(count/grain) hand-outs.
 bool parallelFor(std::int64_t count, std::int64_t grain,
-                 const std::function<void(std::int64_t begin, std::int64_t end)>& body,
+                 FunctionRef<void(std::int64_t begin, std::int64_t end)> body,
                  const CancelToken* cancel = nullptr);
 
 } // namespace slabcast

@@ -17,10 +17,13 @@ BoxCache::Key BoxCache::keyOf(const Scene& scene, double layerLengthMm) {
 
 void BoxCache::prepare(const Scene& scene, double layerLengthMm) {
     const BuiltSkip& skip = scene.skip();
-    const Key key = keyOf(scene, layerLengthMm);
-    if (key != key_) {
-        boxes_ = skip.octree ? visibleBoxes(*skip.octree, skip.test, scene.geometry(), key.lengthMm)
-                             : visibleBoxes(*skip.lengths, scene.geometry(), key.lengthMm);
+    if (!serve(scene, layerLengthMm)) {
+        const Key key = keyOf(scene, layerLengthMm);
+        if (skip.octree) {
+            finder_.find(*skip.octree, skip.test, scene.geometry(), key.lengthMm);
+        } else {
+            finder_.find(*skip.lengths, scene.geometry(), key.lengthMm);
+        }
         key_ = key;
     }
 }

@@ -15,7 +15,7 @@ public:
     void prepare(const Scene& scene, double layerLengthMm);
     /// Whether the boxes hold all that is visible of this scene with layers of this length.
     bool serve(const Scene& scene, double layerLengthMm) const;
-    const std::vector<VisibleBox>& boxes() const { return boxes_; }
+    const std::vector<VisibleBox>& boxes() const { return finder_.boxes(); }
 
 private:
     /// What boxes are made for.
@@ -23,12 +23,11 @@ private:
         int look = -1;
         int skip = -1;
         double lengthMm = 0.0;
-        bool operator==(const Key&) const = default;
     };
     static Key keyOf(const Scene& scene, double layerLengthMm);
 
     Key key_;
-    std::vector<VisibleBox> boxes_;
+    BoxFinder finder_;
 };
 
 } // namespace slabcast

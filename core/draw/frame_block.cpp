@@ -40,7 +40,7 @@ void fillSkip(FrameBlock& block, const BuiltSkip& skip, glm::ivec3 dims) {
     block.skipBlocks = glm::ivec4(blocks - 1, topDown ? kToInitialLevel : 1);
     if (skip.octree) {
         const int bits = skip.octree->bitsPerNode;
-        const SkipLayout layout = octreeLayout(blocks, skip.octree->coarsest() + 1, bits);
+        const SkipLayout& layout = *skip.layout;
         block.octree = {skip.octree->coarsest(), std::countr_zero(unsigned(layout.perTexel)),
                         layout.levels.front().fold, bits};
         std::transform(layout.levels.begin(), layout.levels.end(), block.octreeLevels.begin(),

@@ -5,7 +5,8 @@
 
 namespace slabcast {
 
-Result<void> FullscreenPass::create(std::string_view label, const char* fragmentFile) {
+Result<void> FullscreenPass::create(std::string_view label, const char* fragmentFile,
+                                    std::initializer_list<const char*> uniforms) {
     const Result<std::string> vertex = expandShader("pass/fullscreen.vert", {});
     const Result<std::string> fragment = expandShader(fragmentFile, {});
     if (!vertex || !fragment) {
@@ -16,27 +17,26 @@ Result<void> FullscreenPass::create(std::string_view label, const char* fragment
         return tl::unexpected(program.error());
     }
     program_ = std::move(*program);
-    noVertices_ = gl::VertexArray::make("no vertices");
+    program_.use();
+    gl::Uniform1i(program_.uniform("layer"), 0);
+    for (const char* name : uniforms) {
+        (void)program_.uniform(name); // begin() asks GL nothing
+    }
     return {};
 }
 
 const gl::Program& FullscreenPass::begin(GLuint layer) const {
     program_.use();
-    gl::ActiveTexture(GL_TEXTURE0);
     gl::BindTexture(GL_TEXTURE_2D, layer);
-    gl::BindSampler(0, 0);
-    gl::Uniform1i(program_.uniform("layer"), 0);
     return program_;
 }
 
-void FullscreenPass::draw() const {
-    gl::BindVertexArray(noVertices_.id());
+void FullscreenPass::draw() {
     gl::DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 void FullscreenPass::forget() {
     program_.forget();
-    noVertices_.forget();
 }
 
 } // namespace slabcast

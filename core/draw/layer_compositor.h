@@ -10,12 +10,18 @@ enum class LayerConversion : std::uint8_t { None = 0, Encode = 1, Decode = 2 };
 /// Blends a layer over the bound framebuffer's viewport at (x, y), once.
 class LayerCompositor {
 public:
-    Result<void> create() { return pass_.create("composite", "pass/composite.frag"); }
+    Result<void> create() {
+        return pass_.create("composite", "pass/composite.frag", {"layerOrigin", "conversion"});
+    }
     void composite(GLuint texture, int x, int y, LayerConversion conversion) const;
-    void forget() { pass_.forget(); }
+    void forget() {
+        pass_.forget();
+        conversion_ = LayerConversion::None;
+    }
 
 private:
     FullscreenPass pass_;
+    mutable LayerConversion conversion_ = LayerConversion::None; // that the program was told last
 };
 
 } // namespace slabcast

@@ -141,8 +141,9 @@ Outline sphereOutline(const RayFrame& frame, const Frustum& frustum, const Slab&
     return clearOfView ? Outline{} : Outline{circle->centre, glm::dvec2(circle->radius * kGrow)};
 }
 
-/// Without the empty planes at both ends, the others grown for the rasteriser.
-ProxyStack trimmed(std::vector<Outline> outlines, const RayFrame& frame) {
+/// Takes the empty planes at both ends away and grows the others for the rasteriser.
+void trim(ProxyStack& stack, const RayFrame& frame) {
+    std::vector<Outline>& outlines = stack.outlines;
     const auto drawn = [](const Outline& o) { return !o.empty(); };
     for (Outline& o : outlines) {
         o.halfSize += drawn(o) ? frame.tangentPerPixel * kGrowPixels : glm::dvec2(0.0);
@@ -150,7 +151,9 @@ ProxyStack trimmed(std::vector<Outline> outlines, const RayFrame& frame) {
     const auto first = std::find_if(outlines.begin(), outlines.end(), drawn);
     const auto last =
         std::find_if(outlines.rbegin(), std::make_reverse_iterator(first), drawn).base();
-    return {static_cast<int>(first - outlines.begin()), std::vector<Outline>(first, last)};
+    stack.firstPlane = static_cast<int>(first - outlines.begin());
+    outlines.erase(last, outlines.end());
+    outlines.erase(outlines.begin(), outlines.begin() + stack.firstPlane);
 }
 
 struct Rectangle {
@@ -214,18 +217,21 @@ Appearance appearance(const RayFrame& frame, const glm::dmat4& viewFromUvw, cons
 
 } // namespace
 
-ProxyStack sphereStack(const RayFrame& frame, const Frustum& frustum, int planes,
-                       int layersPerPlane) {
-    std::vector<Outline> outlines(planes);
+void sphereStack(const RayFrame& frame, const Frustum& frustum, int planes, int layersPerPlane,
+                 ProxyStack& stack) {
+    stack.outlines.resize(static_cast<std::size_t>(planes));
     for (int p = 0; p < planes; ++p) {
-        outlines[p] = sphereOutline(frame, frustum, slabOf(frame, p, layersPerPlane));
+        stack.outlines[p] = sphereOutline(frame, frustum, slabOf(frame, p, layersPerPlane));
     }
-    return trimmed(std::move(outlines), frame);
+    trim(stack, frame);
 }
 
-ProxyStack tightStack(const RayFrame& frame, const Frustum& frustum, const glm::dmat4& viewFromUvw,
-                      std::span<const VisibleBox> boxes, int planes, int layersPerPlane) {
-    std::vector<Rectangle> rectangles(planes);
+void tightStack(const RayFrame& frame, const Frustum& frustum, const glm::dmat4& viewFromUvw,
+                std::span<const VisibleBox> boxes, int planes, int layersPerPlane,
+                ProxyStack& stack) {
+    // Until all boxes are in, an outline holds its rectangle's corners.
+    const Rectangle nothing;
+    stack.outlines.assign(static_cast<std::size_t>(planes), {nothing.low, nothing.high});
     const glm::dvec2 viewLow(frustum.left, frustum.bottom);
     const glm::dvec2 viewHigh(frustum.right, frustum.top);
     const double half = frame.lattice.total / 2.0;
@@ -251,31 +257,49 @@ ProxyStack tightStack(const RayFrame& frame, const Frustum& frustum, const glm::
         const double shown = std::max(seen.front, nearest);
         const int last = planeAt(seen.back + jitterReach(frame));
         for (int p = planeAt(shown - jitterReach(frame)); p <= last; ++p) {
-            rectangles[p].include(low, high);
+            Outline& corners = stack.outlines[p];
+            corners.centre = glm::min(corners.centre, low);
+            corners.halfSize = glm::max(corners.halfSize, high);
         }
     }
-    std::vector<Outline> outlines(planes);
-    std::transform(rectangles.begin(), rectangles.end(), outlines.begin(),
-                   [](const Rectangle& r) { return r.outline(); });
-    return trimmed(std::move(outlines), frame);
+    for (Outline& o : stack.outlines) {
+        o = Rectangle{o.centre, o.halfSize}.outline();
+    }
+    trim(stack, frame);
 }
 
-std::vector<Outline> grouped(const ProxyStack& stack, int planesPerOutline) {
-    if (planesPerOutline == 1) {
-        return stack.outlines;
+ProxyStack sphereStack(const RayFrame& frame, const Frustum& frustum, int planes,
+                       int layersPerPlane) {
+    ProxyStack stack;
+    sphereStack(frame, frustum, planes, layersPerPlane, stack);
+    return stack;
+}
+
+ProxyStack tightStack(const RayFrame& frame, const Frustum& frustum, const glm::dmat4& viewFromUvw,
+                      std::span<const VisibleBox> boxes, int planes, int layersPerPlane) {
+    ProxyStack stack;
+    tightStack(frame, frustum, viewFromUvw, boxes, planes, layersPerPlane, stack);
+    return stack;
+}
+
+Outline joined(std::span<const Outline> planes) {
+    if (planes.size() == 1) {
+        return planes.front();
     }
-    std::vector<Outline> result;
-    for (std::size_t begin = 0; begin < stack.outlines.size(); begin += planesPerOutline) {
-        Rectangle rectangle;
-        const std::size_t end = std::min(begin + planesPerOutline, stack.outlines.size());
-        for (const Outline& o : std::span(stack.outlines).subspan(begin, end - begin)) {
-            if (!o.empty()) {
-                rectangle.include(o.centre - o.halfSize, o.centre + o.halfSize);
-            }
+    Rectangle rectangle;
+    for (const Outline& o : planes) {
+        if (!o.empty()) {
+            rectangle.include(o.centre - o.halfSize, o.centre + o.halfSize);
         }
-        result.push_back(rectangle.outline());
     }
-    return result;
+    return rectangle.outline();
+}
+
+std::span<const Outline> group(const ProxyStack& stack, std::size_t index, int planesPerOutline) {
+    const std::size_t begin = index * static_cast<std::size_t>(planesPerOutline);
+    const std::size_t end =
+        std::min(begin + static_cast<std::size_t>(planesPerOutline), stack.outlines.size());
+    return std::span(stack.outlines).subspan(begin, end - begin);
 }
 
 } // namespace slabcast

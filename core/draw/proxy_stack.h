@@ -38,8 +38,16 @@ ProxyStack sphereStack(const RayFrame& frame, const Frustum& frustum, int planes
 ProxyStack tightStack(const RayFrame& frame, const Frustum& frustum, const glm::dmat4& viewFromUvw,
                       std::span<const VisibleBox> boxes, int planes, int layersPerPlane);
 
-/// One outline per run of `planesPerOutline` planes, for stacks beyond the uniform block: the
-/// rectangle around theirs, to be drawn with the square.
-std::vector<Outline> grouped(const ProxyStack& stack, int planesPerOutline);
+/// The same in place of another stack, of as many planes without allocating.
+void sphereStack(const RayFrame& frame, const Frustum& frustum, int planes, int layersPerPlane,
+                 ProxyStack& stack);
+void tightStack(const RayFrame& frame, const Frustum& frustum, const glm::dmat4& viewFromUvw,
+                std::span<const VisibleBox> boxes, int planes, int layersPerPlane,
+                ProxyStack& stack);
+
+/// For stacks beyond the uniform block, whose planes share outlines. The planes of one outline; and
+/// what it is: of several planes the rectangle around theirs, to be drawn with the square.
+std::span<const Outline> group(const ProxyStack& stack, std::size_t index, int planesPerOutline);
+Outline joined(std::span<const Outline> planes);
 
 } // namespace slabcast

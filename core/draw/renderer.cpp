@@ -1,6 +1,7 @@
 #include "core/draw/renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/draw/box_cache.h"
@@ -66,55 +67,74 @@ struct Renderer::State {
     gl::ColorTargets layer, counters;
     std::optional<GpuSkipBuilder> builder; // made when it is first needed
     bool created = false;                  // the objects that do not depend on a scene
+    HostState hostState = HostState::Restore;
     ProgramCache programs;
     BoxCache boxes;
+    ProxyStack stack; // of the view that is staged: room
 
-    Result<void> createFixed();
+    Result<void> createFixed(gl::StateScope& state);
+    Result<const gl::Program*> needProgram(const ShaderVariant& variant, gl::StateScope& state);
+    Result<void> needMarks(const FramePlan& plan, gl::StateScope& state);
     /// What the views need beside textures and shaders.
     Result<void> prepareViews(const Scene& scene, const FramePlan& plan,
-                              std::span<const ViewTarget> views);
+                              std::span<const ViewTarget> views, gl::StateScope& state);
     /// Whether prepareViews() was called for views as large and wide.
     bool servesView(const Scene& scene, const FramePlan& plan, const ViewTarget& target) const;
-    /// Readies the view's planes for drawing; returns the runs to draw them in.
-    std::vector<PlaneRun> beginStack(const Scene& scene, const FramePlan& plan, const View& view,
-                                     const Viewport& viewport, int planesPerRun);
-    Result<void> resizeLayer(const Scene& scene, const FramePlan& plan, glm::ivec2 size);
-    std::vector<GLenum> layerFormats(const Scene& scene, const FramePlan& plan) const;
+    /// Stages a view's planes.
+    void stage(std::size_t index, const Scene& scene, const FramePlan& plan, const View& view,
+               const Viewport& viewport);
+    Result<void> resizeLayer(const Scene& scene, const FramePlan& plan, glm::ivec2 size,
+                             gl::StateScope& state);
     void drawRun(const gl::ColorTargets& into, const FramePlan& plan, glm::ivec2 size,
-                 const gl::Program& program, const PlaneRun& run) const;
+                 const gl::Program& program, const StackShape& shape, const PlaneRun& run) const;
     /// Marks what the layer has of saturated pixels in the depth of `marked`.
     void mark(const gl::ColorTargets& marked, const FramePlan& plan, glm::ivec2 size) const;
-    void drawLayer(const Scene& scene, const FramePlan& plan, const ViewTarget& target,
-                   const gl::Program& program);
-    Result<void> count(const Scene& scene, const FramePlan& plan, const ViewTarget& target);
+    void drawDirectly(std::size_t view, const ViewTarget& target, const FramePlan& plan,
+                      const gl::Program& program) const;
+    void drawLayer(std::size_t view, const ViewTarget& target, const FramePlan& plan,
+                   const gl::Program& program, BlendSwitch& blending) const;
+    Result<void> count(const Scene& scene, const FramePlan& plan, const ViewTarget& target,
+                       gl::StateScope& state);
 };
 
-Result<void> Renderer::State::createFixed() {
+Result<void> Renderer::State::createFixed(gl::StateScope& state) {
     if (created) {
         return {};
     }
+    state.touch();
     drawer.create();
     Result<void> done = compositor.create();
     created = done.has_value();
     return done;
 }
 
-std::vector<PlaneRun> Renderer::State::beginStack(const Scene& scene, const FramePlan& plan,
-                                                  const View& view, const Viewport& viewport,
-                                                  int planesPerRun) {
-    const RayFrame frame = makeRayFrame(view, viewport, scene.geometry(), plan.lattice);
-    SLABCAST_EXPECTS(!plan.tighten || scene.skip().exists(), plan.tighten);
-    ProxyStack stack;
-    if (plan.tighten) {
-        stack =
-            tightStack(frame, view.frustum, view.viewFromModel * scene.geometry().modelFromUvw(),
-                       boxes.boxes(), plan.planes, plan.layersPerPlane);
-    } else {
-        stack = sphereStack(frame, view.frustum, plan.planes, plan.layersPerPlane);
+Result<const gl::Program*> Renderer::State::needProgram(const ShaderVariant& variant,
+                                                        gl::StateScope& state) {
+    if (const gl::Program* known = programs.find(variant)) {
+        return known;
     }
-    textures.bind(scene.skip());
-    drawer.begin(makeFrameBlock(frame, scene, plan), stack, view.frustum, plan.tighten);
-    return runsOf(plan.order, stack, planesPerRun);
+    state.touch();
+    return programs.need(variant);
+}
+
+Result<void> Renderer::State::needMarks(const FramePlan& plan, gl::StateScope& state) {
+    if (plan.planesPerMark == 0 || marks.exist()) {
+        return {};
+    }
+    state.touch();
+    return marks.create();
+}
+
+void Renderer::State::stage(std::size_t index, const Scene& scene, const FramePlan& plan,
+                            const View& view, const Viewport& viewport) {
+    const RayFrame frame = makeRayFrame(view, viewport, scene.geometry(), plan.lattice);
+    if (plan.tighten) {
+        tightStack(frame, view.frustum, view.viewFromModel * scene.geometry().modelFromUvw(),
+                   boxes.boxes(), plan.planes, plan.layersPerPlane, stack);
+    } else {
+        sphereStack(frame, view.frustum, plan.planes, plan.layersPerPlane, stack);
+    }
+    drawer.stage(index, makeFrameBlock(frame, scene, plan), stack, view.frustum, plan.tighten);
 }
 
 Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -122,15 +142,17 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
 
-Result<Renderer> Renderer::create(const Device& device) {
-    return create(device, {});
+Result<Renderer> Renderer::create(const Device& device, HostState hostState) {
+    return create(device, {}, hostState);
 }
 
-Result<Renderer> Renderer::create(const Device& device, const MeasuringText& measuring) {
+Result<Renderer> Renderer::create(const Device& device, const MeasuringText& measuring,
+                                  HostState hostState) {
     auto state = std::make_unique<State>(device);
     state->programs = ProgramCache(measuring);
-    const gl::StateGuard guard;
-    if (Result<void> done = state->createFixed(); !done) {
+    state->hostState = hostState;
+    gl::StateScope scope(hostState);
+    if (Result<void> done = state->createFixed(scope); !done) {
         return tl::unexpected(done.error());
     }
     return Renderer(std::move(state));
@@ -169,7 +191,8 @@ Result<FramePlan> Renderer::plan(const LiveScene& scene, const Settings& setting
 }
 
 Result<void> Renderer::buildSkip(Scene& scene, const SkipOptions& options) {
-    const gl::StateGuard guard;
+    gl::StateScope scope(state_->hostState);
+    scope.touch();
     if (!state_->builder) {
         Result<GpuSkipBuilder> made = GpuSkipBuilder::create(state_->caps);
         if (!made) {
@@ -178,7 +201,7 @@ Result<void> Renderer::buildSkip(Scene& scene, const SkipOptions& options) {
         state_->builder = std::move(*made);
     }
     const bool pre = scene.classified() != nullptr;
-    const Result<GLuint> volume = state_->textures.volumeTexture(scene, pre, state_->caps);
+    const Result<GLuint> volume = state_->textures.volumeTexture(scene, pre, state_->caps, scope);
     if (!volume) {
         return tl::unexpected(volume.error());
     }
@@ -202,32 +225,27 @@ Result<void> Renderer::prepare(const Scene& scene, const FramePlan& plan,
     if (Result<void> ok = checkPlan(plan, scene).and_then([&] { return checkViews(views); }); !ok) {
         return ok;
     }
+    gl::StateScope scope(state_->hostState);
     if (plan.drawsNothing) {
-        const gl::StateGuard guard;
         if (scene.live() == nullptr) { // else the TF may be another one in the next frame
             state_->layer = {};
             state_->counters = {};
         }
-        return state_->textures.update(scene, plan, state_->caps);
+        return state_->textures.update(scene, plan, state_->caps, scope);
     }
-    const gl::StateGuard guard;
-    if (Result<void> done = state_->createFixed(); !done) {
-        return done;
-    }
-    if (Result<void> done = state_->textures.update(scene, plan, state_->caps); !done) {
-        return done;
-    }
-    if (plan.planesPerMark > 0) {
-        if (Result<void> done = state_->marks.create(); !done) {
-            return done;
-        }
-    }
-    const Result<const gl::Program*> program = state_->programs.need(plan.variant);
-    return program ? state_->prepareViews(scene, plan, views) : tl::unexpected(program.error());
+    return state_->createFixed(scope)
+        .and_then([&] { return state_->textures.update(scene, plan, state_->caps, scope); })
+        .and_then([&] { return state_->needMarks(plan, scope); })
+        .and_then([&] { return state_->needProgram(plan.variant, scope); })
+        .and_then(
+            [&](const gl::Program*) { return state_->prepareViews(scene, plan, views, scope); });
 }
 
 Result<void> Renderer::State::prepareViews(const Scene& scene, const FramePlan& plan,
-                                           std::span<const ViewTarget> views) {
+                                           std::span<const ViewTarget> views,
+                                           gl::StateScope& state) {
+    drawer.reserve(views.size());
+    stack.outlines.reserve(static_cast<std::size_t>(plan.planes));
     double longest = 0.0;
     glm::ivec2 layerSize(0);
     for (const ViewTarget& target : views) {
@@ -244,7 +262,7 @@ Result<void> Renderer::State::prepareViews(const Scene& scene, const FramePlan& 
         SLABCAST_EXPECTS(scene.skip().exists(), plan.tighten);
         boxes.prepare(scene, longest);
     }
-    return layerSize.x > 0 ? resizeLayer(scene, plan, layerSize) : Result<void>{};
+    return layerSize.x > 0 ? resizeLayer(scene, plan, layerSize, state) : Result<void>{};
 }
 
 bool Renderer::State::servesView(const Scene& scene, const FramePlan& plan,
@@ -258,30 +276,31 @@ bool Renderer::State::servesView(const Scene& scene, const FramePlan& plan,
     return tightened && layered;
 }
 
-std::vector<GLenum> Renderer::State::layerFormats(const Scene& scene, const FramePlan& plan) const {
-    std::vector<GLenum> formats{glFormat(plan.target)};
-    // TFs that need marks and others that do not share it while the scene is edited.
-    if (plan.planesPerMark > 0 || (scene.live() != nullptr && layer.hasDepth())) {
-        formats.push_back(GL_DEPTH_COMPONENT16);
-    }
-    return formats;
-}
-
 /// Only ever grows: views of different sizes share it without a new one in every frame.
 Result<void> Renderer::State::resizeLayer(const Scene& scene, const FramePlan& plan,
-                                          glm::ivec2 size) {
-    return layer.resize(std::max(size.x, layer.width()), std::max(size.y, layer.height()),
-                        layerFormats(scene, plan));
+                                          glm::ivec2 size, gl::StateScope& state) {
+    const std::array formats{glFormat(plan.target), static_cast<GLenum>(GL_DEPTH_COMPONENT16)};
+    // TFs that need marks and others that do not share it while the scene is edited.
+    const bool depth = plan.planesPerMark > 0 || (scene.live() != nullptr && layer.hasDepth());
+    const std::span needed(formats.data(), depth ? 2 : 1);
+    const glm::ivec2 most = glm::max(size, glm::ivec2(layer.width(), layer.height()));
+    if (layer.is(most.x, most.y, needed)) {
+        return {};
+    }
+    state.touch();
+    return layer.resize(most.x, most.y, needed);
 }
 
 void Renderer::State::drawRun(const gl::ColorTargets& into, const FramePlan& plan, glm::ivec2 size,
-                              const gl::Program& program, const PlaneRun& run) const {
+                              const gl::Program& program, const StackShape& shape,
+                              const PlaneRun& run) const {
     gl::BindFramebuffer(GL_FRAMEBUFFER, into.framebuffer());
     gl::Viewport(0, 0, size.x, size.y);
     if (plan.planesPerMark > 0) {
         SaturationMarks::useForPlanes();
     }
-    drawer.draw(program, run);
+    program.use();
+    drawer.draw(program, shape, run);
 }
 
 void Renderer::State::mark(const gl::ColorTargets& marked, const FramePlan& plan,
@@ -289,22 +308,45 @@ void Renderer::State::mark(const gl::ColorTargets& marked, const FramePlan& plan
     marks.mark(layer.texture(0), marked.depth(), size, saturatedAlpha(plan));
 }
 
-void Renderer::State::drawLayer(const Scene& scene, const FramePlan& plan, const ViewTarget& target,
-                                const gl::Program& program) {
+void Renderer::State::drawDirectly(std::size_t view, const ViewTarget& target,
+                                   const FramePlan& plan, const gl::Program& program) const {
+    const Viewport& v = target.viewport;
+    gl::BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+    gl::Viewport(v.x, v.y, v.width, v.height);
+    const StackShape& shape = drawer.begin(view);
+    PlaneRun run;
+    for (PlaneRuns runs(plan.order, shape, 0); runs.next(run);) {
+        drawer.draw(program, shape, run);
+    }
+}
+
+void Renderer::State::drawLayer(std::size_t view, const ViewTarget& target, const FramePlan& plan,
+                                const gl::Program& program, BlendSwitch& blending) const {
     const Viewport& v = target.viewport;
     const glm::ivec2 size(v.width, v.height);
-    usePlaneBlending(plan.order);
-    layer.begin();
-    const std::vector<PlaneRun> runs =
-        beginStack(scene, plan, target.view, {0, 0, v.width, v.height}, plan.planesPerMark);
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-        if (i > 0) {
+    blending.to(planeBlending(plan.order));
+    layer.clear();
+    gl::Viewport(0, 0, size.x, size.y);
+    if (plan.planesPerMark > 0) {
+        SaturationMarks::useForPlanes();
+    }
+    program.use();
+    const StackShape& shape = drawer.begin(view);
+    PlaneRun run;
+    bool first = true;
+    for (PlaneRuns runs(plan.order, shape, plan.planesPerMark); runs.next(run); first = false) {
+        if (first) {
+            drawer.draw(program, shape, run);
+        } else {
             mark(layer, plan, size);
+            drawRun(layer, plan, size, program, shape, run);
         }
-        drawRun(layer, plan, size, program, runs[i]);
     }
     layer.dropDepth();
-    useBlending(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    if (plan.planesPerMark > 0) {
+        gl::Disable(GL_DEPTH_TEST);
+    }
+    blending.to(kOver);
     gl::BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     gl::Viewport(v.x, v.y, v.width, v.height);
     compositor.composite(layer.texture(0), v.x, v.y, conversionTo(plan.space, target.encoding));
@@ -318,34 +360,51 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
     if (plan.drawsNothing) {
         return {};
     }
-    const gl::StateGuard guard;
     const gl::Program* program = state_->programs.find(plan.variant);
     if (program == nullptr || !state_->textures.serve(scene, plan)) {
         return fail(ErrorCode::InvalidArgument,
                     "scene and plan were not prepared: call prepare() with them first");
     }
-    for (const ViewTarget& target : views) {
-        if (!isEmpty(target.viewport) && !state_->servesView(scene, plan, target)) {
-            return fail(ErrorCode::InvalidArgument,
-                        "a view is larger or wider than those that were prepared, or its target is "
-                        "encoded otherwise: prepare() with these views first");
+    const auto served = [&](const ViewTarget& target) {
+        return isEmpty(target.viewport) || state_->servesView(scene, plan, target);
+    };
+    if (views.size() > state_->drawer.views() || !std::all_of(views.begin(), views.end(), served)) {
+        return fail(ErrorCode::InvalidArgument,
+                    "a view is larger or wider than those that were prepared, its target is "
+                    "encoded otherwise, or there are more: prepare() with these views first");
+    }
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const ViewTarget& target = views[i];
+        const Viewport& v = target.viewport;
+        if (!isEmpty(v)) {
+            const bool layered = needsLayer(plan, target.encoding);
+            state_->stage(i, scene, plan, target.view,
+                          layered ? Viewport{0, 0, v.width, v.height} : v);
         }
     }
-    for (const ViewTarget& target : views) {
-        const Viewport& v = target.viewport;
-        if (isEmpty(v)) {
+    gl::StateScope scope(state_->hostState);
+    scope.touch();
+    state_->drawer.upload(views.size());
+    BlendSwitch blending(planeBlending(plan.order));
+    state_->textures.bind(scene.skip());
+    state_->drawer.useVertices();
+    bool inUse = false; // the program, and the blending, of planes
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const ViewTarget& target = views[i];
+        if (isEmpty(target.viewport)) {
             continue;
         }
         if (needsLayer(plan, target.encoding)) {
-            state_->drawLayer(scene, plan, target, *program);
+            state_->drawLayer(i, target, plan, *program, blending);
+            inUse = false;
             continue;
         }
-        usePlaneBlending(plan.order);
-        gl::BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-        gl::Viewport(v.x, v.y, v.width, v.height);
-        for (const PlaneRun& run : state_->beginStack(scene, plan, target.view, v, 0)) {
-            state_->drawer.draw(*program, run);
+        if (!inUse) {
+            program->use();
+            blending.to(planeBlending(plan.order));
+            inUse = true;
         }
+        state_->drawDirectly(i, target, plan, *program);
     }
     return {};
 }
@@ -353,52 +412,58 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
 /// Counts run by run. What is left out behind a run depends on the picture so far, so that the
 /// picture is drawn beside.
 Result<void> Renderer::State::count(const Scene& scene, const FramePlan& plan,
-                                    const ViewTarget& target) {
+                                    const ViewTarget& target, gl::StateScope& state) {
     const Viewport& v = target.viewport;
     const glm::ivec2 size(v.width, v.height);
     const bool marked = plan.planesPerMark > 0;
     const bool needsPicture = marked || plan.variant.fetchesTarget;
     ShaderVariant counting = plan.variant;
     counting.counts = true;
+    state.touch();
     const Result<const gl::Program*> counts = programs.need(counting);
     const Result<const gl::Program*> colours = needsPicture ? programs.need(plan.variant) : counts;
     if (!counts || !colours) {
         return tl::unexpected(counts ? colours.error() : counts.error());
     }
-    std::vector<GLenum> formats{GL_RGBA32F, GL_RGBA32F};
-    formats.resize(marked ? 3 : 2, GL_DEPTH_COMPONENT16);
-    Result<void> resized =
-        counters.resize(v.width, v.height, formats)
+    const std::array formats{static_cast<GLenum>(GL_RGBA32F), static_cast<GLenum>(GL_RGBA32F),
+                             static_cast<GLenum>(GL_DEPTH_COMPONENT16)};
+    Result<void> ready =
+        counters.resize(v.width, v.height, std::span(formats.data(), marked ? 3 : 2))
+            .and_then([&] { return needMarks(plan, state); })
             .and_then([&] {
-                return prepareViews(scene, plan, {&target, 1});
+                return prepareViews(scene, plan, {&target, 1}, state);
             })
-            .and_then(
-                [&] { return needsPicture ? resizeLayer(scene, plan, size) : Result<void>{}; });
-    if (!resized) {
-        return resized;
+            .and_then([&] {
+                return needsPicture ? resizeLayer(scene, plan, size, state) : Result<void>{};
+            });
+    if (!ready) {
+        return ready;
     }
-    usePlaneBlending(plan.order); // before what clears
+    stage(0, scene, plan, target.view, {0, 0, v.width, v.height});
+    drawer.upload(1);
+    BlendSwitch blending(planeBlending(plan.order)); // before what clears
     counters.begin();
     if (needsPicture) {
-        layer.begin();
+        constexpr GLuint kUnit = unitOf(Sampler::LayerBefore);
+        gl::ActiveTexture(GL_TEXTURE0 + kUnit);
+        gl::BindTexture(GL_TEXTURE_2D, layer.texture(0));
+        gl::BindSampler(kUnit, 0);
+        layer.clear();
     }
-    const std::vector<PlaneRun> runs =
-        beginStack(scene, plan, target.view, {0, 0, v.width, v.height},
-                   plan.variant.fetchesTarget ? 1 : plan.planesPerMark);
-    for (const PlaneRun& run : runs) {
-        useBlending(GL_ONE, GL_ONE);
-        if (needsPicture) {
-            constexpr GLuint kUnit = unitOf(Sampler::LayerBefore);
-            gl::ActiveTexture(GL_TEXTURE0 + kUnit);
-            gl::BindTexture(GL_TEXTURE_2D, layer.texture(0));
-            gl::BindSampler(kUnit, 0);
-        }
-        drawRun(counters, plan, size, **counts, run);
-        if (!needsPicture || &run == &runs.back()) {
+    textures.bind(scene.skip());
+    drawer.useVertices();
+    const StackShape& shape = drawer.begin(0);
+    PlaneRun run;
+    PlaneRuns runs(plan.order, shape, plan.variant.fetchesTarget ? 1 : plan.planesPerMark);
+    while (runs.next(run)) {
+        gl::Disable(GL_DEPTH_TEST);
+        blending.to(kSum);
+        drawRun(counters, plan, size, **counts, shape, run);
+        if (!needsPicture || runs.done()) {
             continue;
         }
-        usePlaneBlending(plan.order);
-        drawRun(layer, plan, size, **colours, run);
+        blending.to(planeBlending(plan.order));
+        drawRun(layer, plan, size, **colours, shape, run);
         if (marked) {
             mark(layer, plan, size);
             mark(counters, plan, size);
@@ -426,8 +491,8 @@ Result<std::vector<PixelWork>> Renderer::workPerPixel(const Scene& scene, const 
     if (plan.drawsNothing || work.empty()) {
         return work;
     }
-    const gl::StateGuard guard;
-    if (Result<void> done = state_->count(scene, plan, target); !done) {
+    gl::StateScope scope(state_->hostState);
+    if (Result<void> done = state_->count(scene, plan, target, scope); !done) {
         return tl::unexpected(done.error());
     }
     const std::vector<glm::vec4> layers = state_->counters.read(0);
@@ -472,7 +537,7 @@ gl::ActiveResources Renderer::resources(const ShaderVariant& variant) const {
 GpuMemory Renderer::gpuMemory() const {
     return {state_->textures.volumeBytes(), state_->textures.skipBytes(),
             state_->textures.tableBytes() + state_->layer.bytes() + state_->counters.bytes() +
-                static_cast<std::int64_t>(kMaxOutlines * sizeof(glm::vec4) + sizeof(FrameBlock))};
+                state_->drawer.bytes()};
 }
 
 void Renderer::contextLost() {

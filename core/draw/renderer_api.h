@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/gl/caps.h"
+#include "core/gl/host_state.h"
 #include "core/plan/frame_plan.h"
 #include "core/scene/live_scene.h"
 #include "core/scene/scene_api.h"
@@ -73,9 +74,12 @@ struct GpuMemory {
 class Renderer {
 public:
     /// Fails: ShaderCompile. Thread: the device's context is current.
-    static Result<Renderer> create(const Device& device);
+    /// `hostState`: what every call of this renderer does with the GL state that it finds; what is
+    /// said of restoring it below holds for HostState::Restore.
+    static Result<Renderer> create(const Device& device, HostState hostState = HostState::Restore);
     /// For measuring alone: what the programs that it makes do otherwise.
-    static Result<Renderer> create(const Device& device, const MeasuringText& measuring);
+    static Result<Renderer> create(const Device& device, const MeasuringText& measuring,
+                                   HostState hostState = HostState::Restore);
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
     ~Renderer();

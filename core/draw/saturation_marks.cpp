@@ -8,6 +8,7 @@ namespace {
 
 /// Planes lie in the middle, marks at 0, what is cleared at 1.
 void testDepth(GLboolean write) {
+    gl::Disable(GL_POLYGON_OFFSET_FILL);
     gl::Enable(GL_DEPTH_TEST);
     gl::DepthRangef(0.0F, 1.0F);
     gl::DepthFunc(GL_LESS);
@@ -21,7 +22,7 @@ Result<void> SaturationMarks::create() {
         return {};
     }
     depthOnly_ = gl::Framebuffer::make("saturation marks");
-    return pass_.create("saturation marks", "pass/mark.frag");
+    return pass_.create("saturation marks", "pass/mark.frag", {"saturatedAlpha"});
 }
 
 void SaturationMarks::useForPlanes() {

@@ -11,6 +11,7 @@ namespace slabcast {
 /// the early depth test there. Tested by: termination_gl_test.cpp
 class SaturationMarks {
 public:
+    bool exist() const { return pass_.exists(); }
     /// Does nothing where all is there already. Fails: ShaderCompile.
     Result<void> create();
 
@@ -20,7 +21,7 @@ public:
 
     /// Marks in `depth` the pixels of `layer` above an alpha, of a rectangle from the lower left
     /// on. Both are textures; one is read and the other alone is drawn into: no feedback. Leaves
-    /// another framebuffer, program and vertex array bound.
+    /// another framebuffer and program bound. Contract: FullscreenPass::begin()'s.
     void mark(GLuint layer, GLuint depth, glm::ivec2 size, double saturatedAlpha) const;
 
     void forget();

@@ -15,7 +15,8 @@ constexpr std::int64_t kMaxBoxes = 16384;
 /// Cubes of 2^shift blocks along each axis, some of them occupied.
 class MacroGrid {
 public:
-    MacroGrid(glm::ivec3 blocks, int blockEdgeVoxels) : blockEdgeVoxels_(blockEdgeVoxels) {
+    MacroGrid(glm::ivec3 blocks, int blockEdgeVoxels, std::vector<std::uint8_t>& occupied)
+        : blockEdgeVoxels_(blockEdgeVoxels), occupied_(occupied) {
         const auto places = [&] {
             const glm::i64vec3 n(size());
             return n.x * n.y * n.z;
@@ -25,7 +26,7 @@ public:
             size_ = (size_ + 1) / 2;
             ++shift_;
         }
-        occupied_.resize(places());
+        occupied_.assign(static_cast<std::size_t>(places()), 0);
     }
 
     int shift() const { return shift_; }
@@ -34,13 +35,14 @@ public:
     std::uint8_t* row(int y, int z) {
         return occupied_.data() + (std::int64_t(z >> shift_) * size_.y + (y >> shift_)) * size_.x;
     }
-    std::vector<VisibleBox> boxes(const VolumeGeometry& geometry, double layerLengthMm) const;
+    void boxes(const VolumeGeometry& geometry, double layerLengthMm,
+               std::vector<VisibleBox>& boxes) const;
 
 private:
     int blockEdgeVoxels_;
     int shift_ = 0;
     glm::ivec3 size_{0};
-    std::vector<std::uint8_t> occupied_; // x fastest
+    std::vector<std::uint8_t>& occupied_; // x fastest
 };
 
 /// How far half a layer reaches in uvw: the rows of uvwFromModel bound how far a unit length goes
@@ -52,12 +54,13 @@ glm::dvec3 reachOfHalfLayer(const VolumeGeometry& geometry, double layerLengthMm
            1e-3 / glm::dvec3(geometry.dims);
 }
 
-std::vector<VisibleBox> MacroGrid::boxes(const VolumeGeometry& geometry,
-                                         double layerLengthMm) const {
+void MacroGrid::boxes(const VolumeGeometry& geometry, double layerLengthMm,
+                      std::vector<VisibleBox>& boxes) const {
     const glm::dvec3 dims(geometry.dims);
     const double edge = blockEdgeVoxels_ << shift_;
     const glm::dvec3 reach = reachOfHalfLayer(geometry, layerLengthMm);
-    std::vector<VisibleBox> boxes;
+    boxes.clear();
+    boxes.reserve(occupied_.size()); // the next TF may show more
     std::size_t place = 0;
     for (int z = 0; z < size_.z; ++z) {
         for (int y = 0; y < size_.y; ++y) {
@@ -75,62 +78,61 @@ std::vector<VisibleBox> MacroGrid::boxes(const VolumeGeometry& geometry,
             }
         }
     }
-    return boxes;
-}
-
-void keepLesser(const std::uint8_t* counts, std::int64_t n, std::uint8_t* __restrict least) {
-    for (std::int64_t i = 0; i < n; ++i) {
-        least[i] = std::min(least[i], counts[i]);
-    }
-}
-
-/// The least count at every x in the rows of `edge` times `edge` blocks from `first` on.
-void leastOfRows(const FreeLengths& lengths, glm::ivec3 first, int edge,
-                 std::vector<std::uint8_t>& least) {
-    const glm::ivec3 blocks = lengths.blocks;
-    const glm::ivec3 end = glm::min(first + edge, blocks);
-    std::fill(least.begin(), least.end(), std::uint8_t(255));
-    for (int z = first.z; z < end.z; ++z) {
-        for (int y = first.y; y < end.y; ++y) {
-            const std::int64_t row = (std::int64_t(z) * blocks.y + y) * blocks.x;
-            keepLesser(lengths.counts.data() + row, blocks.x, least.data());
-        }
-    }
 }
 
 } // namespace
 
-std::vector<VisibleBox> visibleBoxes(const FreeLengths& lengths, const VolumeGeometry& geometry,
-                                     double layerLengthMm) {
-    MacroGrid grid(lengths.blocks, lengths.blockEdgeVoxels);
+void BoxFinder::find(const FreeLengths& lengths, const VolumeGeometry& geometry,
+                     double layerLengthMm) {
+    MacroGrid grid(lengths.blocks, lengths.blockEdgeVoxels, occupied_);
     const glm::ivec3 cubes = grid.size();
     const std::int64_t rowsOfCubes = std::int64_t(cubes.y) * cubes.z;
     const std::int64_t blocksPerRow = std::int64_t(lengths.blocks.x) << (2 * grid.shift());
     constexpr std::int64_t kGrain = 1 << 18; // blocks that are worth another thread
     const auto markRows = [&](std::int64_t begin, std::int64_t end) {
-        std::vector<std::uint8_t> least(lengths.blocks.x);
         for (std::int64_t i = begin; i < end; ++i) {
             const glm::ivec3 first(0, i % cubes.y << grid.shift(), i / cubes.y << grid.shift());
-            leastOfRows(lengths, first, 1 << grid.shift(), least);
+            const glm::ivec3 last = glm::min(first + (1 << grid.shift()), lengths.blocks);
             std::uint8_t* row = grid.row(first.y, first.z);
-            for (int x = 0; x < lengths.blocks.x; ++x) {
-                row[x >> grid.shift()] |= least[x] == 0;
+            for (int z = first.z; z < last.z; ++z) {
+                for (int y = first.y; y < last.y; ++y) {
+                    const std::uint8_t* counts =
+                        lengths.counts.data() +
+                        (std::int64_t(z) * lengths.blocks.y + y) * lengths.blocks.x;
+                    for (int x = 0; x < lengths.blocks.x; ++x) {
+                        row[x >> grid.shift()] |= counts[x] == 0;
+                    }
+                }
             }
         }
     };
     parallelFor(rowsOfCubes, std::max<std::int64_t>(1, kGrain / blocksPerRow), markRows);
-    return grid.boxes(geometry, layerLengthMm);
+    grid.boxes(geometry, layerLengthMm, boxes_);
+}
+
+void BoxFinder::find(const Octree& octree, const NodeTest& test, const VolumeGeometry& geometry,
+                     double layerLengthMm) {
+    MacroGrid grid(octree.levels.front().nodes, octree.leafEdgeVoxels, occupied_);
+    const int level = std::min(grid.shift(), octree.coarsest());
+    forVisibleNodes(octree, test, level, [&](glm::ivec3 node) {
+        const glm::ivec3 leaf = node << level;
+        grid.row(leaf.y, leaf.z)[leaf.x >> grid.shift()] = 1;
+    });
+    grid.boxes(geometry, layerLengthMm, boxes_);
+}
+
+std::vector<VisibleBox> visibleBoxes(const FreeLengths& lengths, const VolumeGeometry& geometry,
+                                     double layerLengthMm) {
+    BoxFinder finder;
+    finder.find(lengths, geometry, layerLengthMm);
+    return finder.boxes();
 }
 
 std::vector<VisibleBox> visibleBoxes(const Octree& octree, const NodeTest& test,
                                      const VolumeGeometry& geometry, double layerLengthMm) {
-    MacroGrid grid(octree.levels.front().nodes, octree.leafEdgeVoxels);
-    const int level = std::min(grid.shift(), octree.coarsest());
-    for (const glm::ivec3 node : visibleNodes(octree, test, level)) {
-        const glm::ivec3 leaf = node << level;
-        grid.row(leaf.y, leaf.z)[leaf.x >> grid.shift()] = 1;
-    }
-    return grid.boxes(geometry, layerLengthMm);
+    BoxFinder finder;
+    finder.find(octree, test, geometry, layerLengthMm);
+    return finder.boxes();
 }
 
 } // namespace slabcast

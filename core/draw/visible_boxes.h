@@ -29,4 +29,18 @@ std::vector<VisibleBox> visibleBoxes(const FreeLengths& lengths, const VolumeGeo
 std::vector<VisibleBox> visibleBoxes(const Octree& octree, const NodeTest& test,
                                      const VolumeGeometry& geometry, double layerLengthMm);
 
+/// The same again and again: allocates where there are more boxes to be than ever before, which is
+/// said by the volume, not by the TF.
+class BoxFinder {
+public:
+    void find(const FreeLengths& lengths, const VolumeGeometry& geometry, double layerLengthMm);
+    void find(const Octree& octree, const NodeTest& test, const VolumeGeometry& geometry,
+              double layerLengthMm);
+    const std::vector<VisibleBox>& boxes() const { return boxes_; }
+
+private:
+    std::vector<VisibleBox> boxes_;
+    std::vector<std::uint8_t> occupied_;
+};
+
 } // namespace slabcast

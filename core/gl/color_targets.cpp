@@ -24,8 +24,13 @@ int bytesPerPixel(GLenum format) {
 
 } // namespace
 
-Result<void> ColorTargets::resize(int width, int height, const std::vector<GLenum>& formats) {
-    if (framebuffer_ && width == width_ && height == height_ && formats == formats_) {
+bool ColorTargets::is(int width, int height, std::span<const GLenum> formats) const {
+    return framebuffer_ && width == width_ && height == height_ &&
+           std::equal(formats.begin(), formats.end(), formats_.begin(), formats_.end());
+}
+
+Result<void> ColorTargets::resize(int width, int height, std::span<const GLenum> formats) {
+    if (is(width, height, formats)) {
         return {};
     }
     textures_.clear();
@@ -50,7 +55,7 @@ Result<void> ColorTargets::resize(int width, int height, const std::vector<GLenu
     DrawBuffers(static_cast<GLsizei>(attachments.size()), attachments.data());
     width_ = width;
     height_ = height;
-    formats_ = formats;
+    formats_.assign(formats.begin(), formats.end());
     if (CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
         framebuffer_.release();
         return fail(ErrorCode::DeviceOutOfMemory,
@@ -61,8 +66,12 @@ Result<void> ColorTargets::resize(int width, int height, const std::vector<GLenu
 }
 
 void ColorTargets::begin(glm::vec4 color) const {
-    BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
     Viewport(0, 0, width_, height_);
+    clear(color);
+}
+
+void ColorTargets::clear(glm::vec4 color) const {
+    BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
     for (std::size_t k = 0; k < textures_.size(); ++k) {
         if (formats_[k] == GL_DEPTH_COMPONENT16) {
             const GLfloat farthest = 1.0F;
@@ -84,7 +93,7 @@ void ColorTargets::dropDepth() const {
 std::vector<glm::vec4> ColorTargets::read(std::size_t index) const {
     BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
     ReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(index));
-    StateGuard::usePlainPixelTransfer();
+    StateGuard::usePlainPacking();
     std::vector<glm::vec4> pixels(static_cast<std::size_t>(width_) * height_);
     if (formats_[index] != GL_RGBA8) {
         ReadPixels(0, 0, width_, height_, GL_RGBA, GL_FLOAT, pixels.data());

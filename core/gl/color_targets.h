@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
+#include <span>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -17,11 +19,18 @@ public:
     /// One texture per format: GL_RGBA8, GL_RGBA16F or GL_RGBA32F, and GL_DEPTH_COMPONENT16 as the
     /// last, if any. Does nothing where size and formats are the same. Leaves the framebuffer
     /// bound. Fails: DeviceOutOfMemory (the framebuffer is not complete).
-    Result<void> resize(int width, int height, const std::vector<GLenum>& formats);
+    Result<void> resize(int width, int height, std::span<const GLenum> formats);
+    Result<void> resize(int width, int height, std::initializer_list<GLenum> formats) {
+        return resize(width, height, std::span(formats.begin(), formats.size()));
+    }
+    /// Whether resize() would do nothing.
+    bool is(int width, int height, std::span<const GLenum> formats) const;
 
     /// Makes it the draw framebuffer with its whole size as viewport, every texture filled with
     /// `color`, depth with 1. Leaves the depth mask on where there is depth.
     void begin(glm::vec4 color = glm::vec4(0.0F)) const;
+    /// The same with the viewport as it is, for who sets one.
+    void clear(glm::vec4 color = glm::vec4(0.0F)) const;
 
     /// Depth is not needed any more: a tiler then has nothing of it to store. Contract: it is the
     /// draw framebuffer. Does nothing where there is none.

@@ -21,18 +21,21 @@ struct PixelStore {
     GLint plain; // what tightly packed pixels need
 };
 
-constexpr std::array<PixelStore, StateGuard::kPixelStores> kPixelStoreNames = {{
-    {GL_UNPACK_ALIGNMENT, 1},
-    {GL_UNPACK_ROW_LENGTH, 0},
-    {GL_UNPACK_IMAGE_HEIGHT, 0},
-    {GL_UNPACK_SKIP_PIXELS, 0},
-    {GL_UNPACK_SKIP_ROWS, 0},
-    {GL_UNPACK_SKIP_IMAGES, 0},
-    {GL_PACK_ALIGNMENT, 1},
-    {GL_PACK_ROW_LENGTH, 0},
-    {GL_PACK_SKIP_PIXELS, 0},
-    {GL_PACK_SKIP_ROWS, 0},
-}};
+constexpr std::array<PixelStore, 6> kUnpacking = {{{GL_UNPACK_ALIGNMENT, 1},
+                                                   {GL_UNPACK_ROW_LENGTH, 0},
+                                                   {GL_UNPACK_IMAGE_HEIGHT, 0},
+                                                   {GL_UNPACK_SKIP_PIXELS, 0},
+                                                   {GL_UNPACK_SKIP_ROWS, 0},
+                                                   {GL_UNPACK_SKIP_IMAGES, 0}}};
+constexpr std::array<PixelStore, 4> kPacking = {{{GL_PACK_ALIGNMENT, 1},
+                                                 {GL_PACK_ROW_LENGTH, 0},
+                                                 {GL_PACK_SKIP_PIXELS, 0},
+                                                 {GL_PACK_SKIP_ROWS, 0}}};
+static_assert(kUnpacking.size() + kPacking.size() == StateGuard::kPixelStores);
+
+GLenum pixelStoreName(std::size_t i) {
+    return i < kUnpacking.size() ? kUnpacking[i].name : kPacking[i - kUnpacking.size()].name;
+}
 
 GLint integer(GLenum name) {
     GLint value = 0;
@@ -76,7 +79,7 @@ StateGuard::StateGuard() {
         switches_[i] = IsEnabled(kSwitchNames[i]) == GL_TRUE;
     }
     for (std::size_t i = 0; i < pixelStores_.size(); ++i) {
-        pixelStores_[i] = integer(kPixelStoreNames[i].name);
+        pixelStores_[i] = integer(pixelStoreName(i));
     }
 }
 
@@ -96,14 +99,20 @@ StateGuard::~StateGuard() {
         setSwitch(kSwitchNames[i], switches_[i]);
     }
     for (std::size_t i = 0; i < pixelStores_.size(); ++i) {
-        PixelStorei(kPixelStoreNames[i].name, pixelStores_[i]);
+        PixelStorei(pixelStoreName(i), pixelStores_[i]);
     }
 }
 
-void StateGuard::usePlainPixelTransfer() {
+void StateGuard::usePlainUnpacking() {
     BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    for (const PixelStore& store : kUnpacking) {
+        PixelStorei(store.name, store.plain);
+    }
+}
+
+void StateGuard::usePlainPacking() {
     BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-    for (const PixelStore& store : kPixelStoreNames) {
+    for (const PixelStore& store : kPacking) {
         PixelStorei(store.name, store.plain);
     }
 }

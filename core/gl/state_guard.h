@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "core/gl/api.h"
+#include "core/gl/host_state.h"
 
 namespace slabcast::gl {
 
@@ -28,9 +30,10 @@ public:
     StateGuard(const StateGuard&) = delete;
     StateGuard& operator=(const StateGuard&) = delete;
 
-    /// Tightly packed pixels from and to client memory, whatever the host had set: before uploads
-    /// and reads.
-    static void usePlainPixelTransfer();
+    /// Tightly packed pixels from client memory, whatever the host had set: before uploads.
+    static void usePlainUnpacking();
+    /// The same to client memory: before reads.
+    static void usePlainPacking();
 
     static constexpr int kUnits = 8;
     static constexpr int kIndexedBuffers = 2; // of each kind
@@ -91,6 +94,24 @@ private:
     Buffers storageBuffers_;
     ImageUnit image_;
     std::array<Unit, kUnits> units_{};
+};
+
+/// A guard from the first change of state on, where the host wants its own back: what turns out to
+/// change nothing calls no GL. Tested by: host_cost_gl_test.cpp
+class StateScope {
+public:
+    explicit StateScope(HostState host) : restores_(host == HostState::Restore) {}
+
+    /// Called before whatever changes state, as often as that is.
+    void touch() {
+        if (restores_ && !guard_) {
+            guard_.emplace();
+        }
+    }
+
+private:
+    bool restores_;
+    std::optional<StateGuard> guard_;
 };
 
 } // namespace slabcast::gl

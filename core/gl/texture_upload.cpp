@@ -52,18 +52,26 @@ Result<void> takeUploadError(const std::string& what) {
 
 Result<gl::Texture> upload2d(const char* label, const TexelLayout& layout, glm::ivec2 size,
                              const void* texels) {
-    const gl::StateGuard guard;
-    gl::StateGuard::usePlainPixelTransfer();
-    gl::takeError();
+    return allocate2d(label, layout, size).map([&](gl::Texture&& texture) {
+        fill2d(texture, layout, size, texels);
+        return std::move(texture);
+    });
+}
+
+Result<gl::Texture> allocate2d(const char* label, const TexelLayout& layout, glm::ivec2 size) {
+    gl::takeError(); // what came before is not ours
     gl::Texture texture = gl::Texture::make(label, GL_TEXTURE_2D);
     gl::BindTexture(GL_TEXTURE_2D, texture.id());
     gl::TexStorage2D(GL_TEXTURE_2D, 1, layout.internalFormat, size.x, size.y);
     setSampling(GL_TEXTURE_2D, layout.filter);
+    return takeUploadError(std::string("the ") + label).map([&] { return std::move(texture); });
+}
+
+void fill2d(const gl::Texture& texture, const TexelLayout& layout, glm::ivec2 size,
+            const void* texels) {
+    gl::StateGuard::usePlainUnpacking();
+    gl::BindTexture(GL_TEXTURE_2D, texture.id());
     gl::TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size.x, size.y, layout.format, layout.type, texels);
-    if (const auto uploaded = takeUploadError(std::string("the ") + label); !uploaded) {
-        return tl::unexpected(uploaded.error());
-    }
-    return texture;
 }
 
 Result<gl::Texture> allocate3d(const char* label, const TexelLayout& layout, glm::ivec3 dims) {
@@ -77,8 +85,7 @@ Result<gl::Texture> allocate3d(const char* label, const TexelLayout& layout, glm
 
 Result<void> fillSlices(const char* label, const gl::Texture& texture, const TexelLayout& layout,
                         const Slices& slices, const void* texels) {
-    const gl::StateGuard guard;
-    gl::StateGuard::usePlainPixelTransfer();
+    gl::StateGuard::usePlainUnpacking();
     gl::takeError();
     gl::BindTexture(GL_TEXTURE_3D, texture.id());
     uploadSlabs(layout, slices, static_cast<const std::byte*>(texels));
@@ -87,7 +94,6 @@ Result<void> fillSlices(const char* label, const gl::Texture& texture, const Tex
 
 Result<gl::Texture> upload3d(const char* label, const TexelLayout& layout, glm::ivec3 dims,
                              const void* texels) {
-    const gl::StateGuard guard;
     Result<gl::Texture> texture = allocate3d(label, layout, dims);
     if (!texture) {
         return texture;

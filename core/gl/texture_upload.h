@@ -9,11 +9,12 @@
 
 namespace slabcast {
 
-/// The uploads below restore the GL state. The textures have one level and clamp to the edge; 3D
-/// texels are uploaded in parts of 16 MiB, which bounds the driver's staging memory. GL errors that
-/// were raised before and not read are lost: a host that wants to know of its own must call
-/// glGetError before. Fail: DeviceOutOfMemory, Internal (another GL error).
-/// Tested by: texel_format_gl_test.cpp
+/// The uploads below bind their textures to the active unit and make unpacking plain; who calls
+/// them holds a gl::StateScope where that is the host's. The textures have one level and clamp to
+/// the edge; 3D texels are uploaded in parts of 16 MiB, which bounds the driver's staging memory.
+/// GL errors that were raised before and not read are lost: a host that wants to know of its own
+/// must call glGetError before. Fail: DeviceOutOfMemory, Internal (another GL error). Tested by:
+/// texel_format_gl_test.cpp
 
 /// How texels lie in a texture and in memory.
 struct TexelLayout {
@@ -41,9 +42,15 @@ Result<void> fillSlices(const char* label, const gl::Texture& texture, const Tex
 Result<gl::Texture> upload3d(const char* label, const TexelLayout& layout, glm::ivec3 dims,
                              const void* texels);
 
-/// A 2D texture of one level.
+/// A 2D texture of one level, without content, and with some.
+Result<gl::Texture> allocate2d(const char* label, const TexelLayout& layout, glm::ivec2 size);
 Result<gl::Texture> upload2d(const char* label, const TexelLayout& layout, glm::ivec2 size,
                              const void* texels);
+
+/// Uploads `texels`, tightly packed, to the lower left part of a 2D texture of this layout. Asks GL
+/// nothing and allocates nothing. Contract: they fit.
+void fill2d(const gl::Texture& texture, const TexelLayout& layout, glm::ivec2 size,
+            const void* texels);
 
 /// Reads the GL error flags; `what` names the upload in the error. Fails: DeviceOutOfMemory,
 /// Internal.

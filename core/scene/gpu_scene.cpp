@@ -38,17 +38,29 @@ GpuScene::Sources GpuScene::needs(const Scene& scene, const FramePlan& plan) {
     return {pre ? look : scene.texelsGeneration(), pre ? 0 : look};
 }
 
-std::vector<const BuiltSkip*> GpuScene::neededSkips(const Scene& scene, const FramePlan& plan) {
-    std::vector<const BuiltSkip*> needed;
-    const bool skips = plan.skip != SkipStructure::None && !plan.drawsNothing;
-    if (skips || scene.live() != nullptr) {
-        for (const BuiltSkip* skip : scene.residentSkips()) {
-            if (skip->exists()) {
-                needed.push_back(skip);
-            }
-        }
+GpuScene::NeededSkips GpuScene::neededSkips(const Scene& scene, const FramePlan& plan) {
+    if (const LiveSkip* live = scene.live()) {
+        return {&live->always(), &live->settled(), &live->incoming()};
     }
-    return needed;
+    const bool skips = plan.skip != SkipStructure::None && !plan.drawsNothing;
+    return {skips ? &scene.skip() : nullptr};
+}
+
+bool GpuScene::isNeeded(const HeldSkip& one, const NeededSkips& needed) const {
+    return std::any_of(needed.begin(), needed.end(), [&](const BuiltSkip* skip) {
+        return skip != nullptr && skip->exists() && skip->generation == one.generation;
+    });
+}
+
+/// Whether the textures are those, whole, and no others.
+bool GpuScene::hold(const NeededSkips& needed, bool live) const {
+    const bool noneMissing = std::all_of(needed.begin(), needed.end(), [&](const BuiltSkip* skip) {
+        const HeldSkip* one = skip == nullptr || !skip->exists() ? nullptr : held(*skip);
+        return skip == nullptr || !skip->exists() || (one != nullptr && one->whole());
+    });
+    const bool noneOld = std::all_of(skips_.begin(), skips_.end(),
+                                     [&](const HeldSkip& one) { return isNeeded(one, needed); });
+    return noneMissing && noneOld && (live || spares_.empty());
 }
 
 const GpuScene::HeldSkip* GpuScene::held(const BuiltSkip& skip) const {
@@ -68,36 +80,25 @@ bool GpuScene::serve(const Scene& scene, const FramePlan& plan) const {
     return held_ == needs(scene, plan) && (!skips || (skip != nullptr && skip->whole()));
 }
 
-Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const gl::Caps& caps) {
+Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const gl::Caps& caps,
+                              gl::StateScope& state) {
     const Sources needed = needs(scene, plan);
     const bool pre = plan.variant.classification == Classification::Pre;
-    if (Result<void> done = updateVolume(scene, pre, needed.volume, caps); !done) {
-        return done;
-    }
-    if (held_.table != needed.table) {
-        held_.table = 0;
-        table_.release();
-        tableBytes_ = 0;
-        if (needed.table != 0) {
-            if (Result<void> done = updateTable(scene, caps); !done) {
-                return done;
-            }
-        }
-        held_.table = needed.table;
-    }
-    return updateSkips(scene, plan, caps);
+    return updateVolume(scene, pre, needed.volume, caps, state)
+        .and_then([&] { return updateTable(scene, needed.table, caps, state); })
+        .and_then([&] { return updateSkips(scene, plan, caps, state); });
 }
 
-Result<void> GpuScene::updateSkips(const Scene& scene, const FramePlan& plan,
-                                   const gl::Caps& caps) {
+Result<void> GpuScene::updateSkips(const Scene& scene, const FramePlan& plan, const gl::Caps& caps,
+                                   gl::StateScope& state) {
     const bool live = scene.live() != nullptr;
-    const std::vector<const BuiltSkip*> needed = neededSkips(scene, plan);
-    const auto isNeeded = [&](const HeldSkip& one) {
-        return std::any_of(needed.begin(), needed.end(), [&](const BuiltSkip* skip) {
-            return skip->generation == one.generation;
-        });
-    };
-    const auto firstOld = std::partition(skips_.begin(), skips_.end(), isNeeded);
+    const NeededSkips needed = neededSkips(scene, plan);
+    if (hold(needed, live)) {
+        return {};
+    }
+    state.touch();
+    const auto firstOld = std::partition(
+        skips_.begin(), skips_.end(), [&](const HeldSkip& one) { return isNeeded(one, needed); });
     std::vector<HeldSkip> old(std::make_move_iterator(firstOld),
                               std::make_move_iterator(skips_.end()));
     skips_.erase(firstOld, skips_.end());
@@ -106,6 +107,9 @@ Result<void> GpuScene::updateSkips(const Scene& scene, const FramePlan& plan,
         spares_.clear();
     }
     for (const BuiltSkip* skip : needed) {
+        if (skip == nullptr || !skip->exists()) {
+            continue;
+        }
         const bool canWait = live && skip == &scene.live()->incoming();
         Result<void> done = skip->octree
                                 ? needOctree(*skip, caps)
@@ -170,21 +174,28 @@ Result<void> GpuScene::needGrid(const BuiltSkip& skip, std::int64_t mostBytes,
     return {};
 }
 
-Result<void> GpuScene::updateTable(const Scene& scene, const gl::Caps& caps) {
-    if (const PreintegratedTable* square = scene.preintegrated()) {
-        tableBytes_ = static_cast<std::int64_t>(square->texels.size()) * 8;
-        return keep(table_, uploadSquareTable(square->texels, caps));
+Result<void> GpuScene::updateTable(const Scene& scene, int generation, const gl::Caps& caps,
+                                   gl::StateScope& state) {
+    if (held_.table == generation) {
+        return {};
     }
-    const TransferTable& table = scene.table();
-    tableBytes_ = static_cast<std::int64_t>(table.texels.size()) * (table.wide ? 16 : 8);
-    return keep(table_, uploadTable(table.texels, table.wide, caps));
+    held_.table = 0;
+    if (generation == 0) {
+        if (scene.live() == nullptr) { // else the next TF needs one
+            table_.release();
+        }
+        return {};
+    }
+    state.touch();
+    return table_.fill(scene, caps).map([&] { held_.table = generation; });
 }
 
 Result<void> GpuScene::updateVolume(const Scene& scene, bool pre, int generation,
-                                    const gl::Caps& caps) {
+                                    const gl::Caps& caps, gl::StateScope& state) {
     if (held_.volume == generation) {
         return {};
     }
+    state.touch();
     held_.volume = 0;
     volume_.release(); // before the next is allocated: two volumes may not fit
     volumeBytes_ = 0;
@@ -208,9 +219,10 @@ Result<void> GpuScene::updateVolume(const Scene& scene, bool pre, int generation
     return done;
 }
 
-Result<GLuint> GpuScene::volumeTexture(const Scene& scene, bool pre, const gl::Caps& caps) {
+Result<GLuint> GpuScene::volumeTexture(const Scene& scene, bool pre, const gl::Caps& caps,
+                                       gl::StateScope& state) {
     const int generation = pre ? scene.lookGeneration() : scene.texelsGeneration();
-    return updateVolume(scene, pre, generation, caps).map([&] { return volume_.id(); });
+    return updateVolume(scene, pre, generation, caps, state).map([&] { return volume_.id(); });
 }
 
 void GpuScene::adopt(const BuiltSkip& skip, SkipTexture texture) {
@@ -238,15 +250,18 @@ void GpuScene::bind(const BuiltSkip& skip) const {
         Sampler sampler;
         GLenum target;
         GLuint id;
-    } textures[] = {{Sampler::Volume, GL_TEXTURE_3D, volume_.id()},
-                    {Sampler::Table, GL_TEXTURE_2D, table_.id()},
+    } textures[] = {{Sampler::Table, GL_TEXTURE_2D, table_.id()},
                     {Sampler::Skip, GL_TEXTURE_3D,
-                     skipTexture != nullptr ? skipTexture->texture.texture.id() : 0}};
+                     skipTexture != nullptr ? skipTexture->texture.texture.id() : 0},
+                    {Sampler::Volume, GL_TEXTURE_3D, volume_.id()}};
+    static_assert(unitOf(Sampler::Volume) == 0); // the last: passes after this bind to unit 0
     for (const auto& one : textures) {
-        const GLuint unit = unitOf(one.sampler);
-        gl::ActiveTexture(GL_TEXTURE0 + unit);
-        gl::BindTexture(one.target, one.id);
-        gl::BindSampler(unit, 0);
+        if (one.id != 0) {
+            const GLuint unit = unitOf(one.sampler);
+            gl::ActiveTexture(GL_TEXTURE0 + unit);
+            gl::BindTexture(one.target, one.id);
+            gl::BindSampler(unit, 0);
+        }
     }
 }
 

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <array>
+#include <span>
 #include <vector>
 
 #include "core/gl/caps.h"
 #include "core/gl/objects.h"
+#include "core/gl/state_guard.h"
 #include "core/plan/frame_plan.h"
 #include "core/scene/scene.h"
+#include "core/scene/table_texture.h"
 #include "core/skip/gpu/skip_texture.h"
 
 namespace slabcast {
@@ -14,12 +18,15 @@ namespace slabcast {
 /// longer does. While the scene is edited, what the next TF may need again stays.
 class GpuScene {
 public:
-    /// Fails: DeviceOutOfMemory, VolumeTooLarge.
-    Result<void> update(const Scene& scene, const FramePlan& plan, const gl::Caps& caps);
+    /// Touches `state`, and calls GL, only where there is something to do. Fails:
+    /// DeviceOutOfMemory, VolumeTooLarge.
+    Result<void> update(const Scene& scene, const FramePlan& plan, const gl::Caps& caps,
+                        gl::StateScope& state);
 
     /// The volume's texture alone, scalars or pre-classified, for who builds from it; owned here.
     /// Fails: as update().
-    Result<GLuint> volumeTexture(const Scene& scene, bool pre, const gl::Caps& caps);
+    Result<GLuint> volumeTexture(const Scene& scene, bool pre, const gl::Caps& caps,
+                                 gl::StateScope& state);
     /// The texture of a structure that was built on the GPU, in place of those that were held.
     void adopt(const BuiltSkip& skip, SkipTexture texture);
 
@@ -31,7 +38,7 @@ public:
 
     std::int64_t volumeBytes() const { return volumeBytes_; }
     std::int64_t skipBytes() const; // of all structures, and of spare ones
-    std::int64_t tableBytes() const { return tableBytes_; }
+    std::int64_t tableBytes() const { return table_.bytes(); }
 
     void forget();
 
@@ -51,23 +58,30 @@ private:
         bool whole() const { return slices == blocks.z; }
     };
     static Sources needs(const Scene& scene, const FramePlan& plan);
-    static std::vector<const BuiltSkip*> neededSkips(const Scene& scene, const FramePlan& plan);
+    /// Structures whose textures are to be there; some may be null.
+    using NeededSkips = std::array<const BuiltSkip*, 3>;
+    static NeededSkips neededSkips(const Scene& scene, const FramePlan& plan);
+    bool isNeeded(const HeldSkip& one, const NeededSkips& needed) const;
+    bool hold(const NeededSkips& needed, bool live) const;
     HeldSkip* held(const BuiltSkip& skip);
     const HeldSkip* held(const BuiltSkip& skip) const;
 
-    Result<void> updateVolume(const Scene& scene, bool pre, int generation, const gl::Caps& caps);
-    Result<void> updateTable(const Scene& scene, const gl::Caps& caps);
-    Result<void> updateSkips(const Scene& scene, const FramePlan& plan, const gl::Caps& caps);
+    Result<void> updateVolume(const Scene& scene, bool pre, int generation, const gl::Caps& caps,
+                              gl::StateScope& state);
+    Result<void> updateTable(const Scene& scene, int generation, const gl::Caps& caps,
+                             gl::StateScope& state);
+    Result<void> updateSkips(const Scene& scene, const FramePlan& plan, const gl::Caps& caps,
+                             gl::StateScope& state);
     Result<void> needOctree(const BuiltSkip& skip, const gl::Caps& caps);
     Result<HeldSkip> emptyGrid(glm::ivec3 blocks, const gl::Caps& caps);
     Result<void> needGrid(const BuiltSkip& skip, std::int64_t mostBytes, const gl::Caps& caps);
 
     Sources held_;
-    gl::Texture volume_, table_;
+    gl::Texture volume_;
+    TableTexture table_;
     std::vector<HeldSkip> skips_;
     std::vector<HeldSkip> spares_; // of grids, longest unused first: no frame allocates anew
     std::int64_t volumeBytes_ = 0;
-    std::int64_t tableBytes_ = 0;
 };
 
 } // namespace slabcast

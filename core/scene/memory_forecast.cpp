@@ -83,7 +83,10 @@ Result<MemoryForecast> forecastMemory(glm::ivec3 dims, VoxelType type, TexelForm
     const auto voxels = checkedByteCount(glm::i64vec3(dims), type);
     const auto texels = forecastTextureBytes(dims, format);
     const auto uploaded = textureBytes(dims, uploadedBytesPerTexel(format, preclassified));
-    const auto codes = textureBytes(dims, 2);
+    // Of 8-bit scalars they are the texels themselves, of pre-classified ones their alphas.
+    const bool ownCodes = format == TexelFormat::R8 && !preclassified;
+    const auto codes =
+        ownCodes ? Result<std::int64_t>(0) : textureBytes(dims, preclassified ? 1 : 2);
     for (const Result<std::int64_t>* part : {&voxels, &texels, &uploaded, &codes}) {
         if (!*part) {
             return tl::unexpected(part->error());

@@ -65,6 +65,7 @@ struct Scene::State {
     std::optional<ClassifiedTexels> classified;
     BuiltSkip skip = noSkip(); // while the scene is not edited
     std::optional<LiveSkip> live;
+    CellVisibility editedVisibility; // of the last edit: room for the next
     int texelsGeneration = 0;
     int lookGeneration = 0;
 
@@ -144,7 +145,7 @@ void Scene::State::buildTable() {
                                                std::min(maxTableSize, kMaxPreintegratedSize));
         table = {};
     } else {
-        table = makeTable(look.tf, s.min, s.max, integerData, provided->space, maxTableSize);
+        makeTable(look.tf, s.min, s.max, integerData, provided->space, maxTableSize, table);
         preintegrated.reset();
     }
 }
@@ -214,7 +215,7 @@ Result<void> Scene::State::needCodes() {
     if (texels->data.empty()) {
         return fail(ErrorCode::InvalidArgument, kTexelsAreGone);
     }
-    codes = std::make_shared<const TexelCodes>(encodeCodes(*texels));
+    codes = std::make_shared<const TexelCodes>(encodeCodes(*texels, texels));
     return {};
 }
 
@@ -257,7 +258,9 @@ Result<void> Scene::edit(TransferFunction tf) {
         state_->look.tf = std::move(valid);
         state_->lookGeneration = nextGeneration();
         state_->buildTable();
-        state_->live->edit(state_->visibility());
+        findVisibility(*state_->codes, *state_->texels, state_->servingTable(),
+                       state_->filterErrorSampled, state_->editedVisibility);
+        state_->live->edit(state_->editedVisibility);
     });
 }
 

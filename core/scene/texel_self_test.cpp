@@ -4,6 +4,7 @@
 
 #include <glm/gtc/packing.hpp>
 
+#include "core/gl/color_targets.h"
 #include "core/gl/program.h"
 #include "core/gl/state_guard.h"
 #include "core/scene/texel_format.h"
@@ -171,12 +172,7 @@ public:
         }
         bench.sample_ = std::move(*sample);
         bench.fetch_ = std::move(*fetch);
-        gl::BindTexture(GL_TEXTURE_2D, bench.target_.id());
-        gl::TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA32F, kSamples, 1);
-        gl::BindFramebuffer(GL_FRAMEBUFFER, bench.framebuffer_.id());
-        gl::FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D,
-                                 bench.target_.id(), 0);
-        if (gl::CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+        if (!bench.target_.resize(kSamples, 1, {GL_RGBA32F})) {
             return fail(ErrorCode::DeviceUnsupported,
                         "RGBA32F cannot be drawn to, though GLES 3.2 asks for it");
         }
@@ -252,16 +248,12 @@ private:
         gl::BindSampler(0, 0);
         gl::BindTexture(GL_TEXTURE_3D, texture->id());
         gl::DrawArrays(GL_TRIANGLES, 0, 3);
-        gl::StateGuard::usePlainPixelTransfer();
-        Row row(kSamples);
-        gl::ReadPixels(0, 0, kSamples, 1, GL_RGBA, GL_FLOAT, row.data());
-        return row;
+        return target_.read();
     }
 
     gl::Program sample_;
     gl::Program fetch_;
-    gl::Texture target_ = gl::Texture::make("texel test target", GL_TEXTURE_2D);
-    gl::Framebuffer framebuffer_ = gl::Framebuffer::make("texel test");
+    gl::ColorTargets target_;
     gl::VertexArray vertexArray_ = gl::VertexArray::make("texel test");
 };
 

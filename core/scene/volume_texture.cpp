@@ -27,18 +27,6 @@ Result<gl::Texture> uploadVoxels(const char* label, const TexelLayout& layout, g
     return upload3d(label, layout, dims, data);
 }
 
-/// A transfer table.
-Result<gl::Texture> uploadTable2d(glm::i64vec2 size, GLenum format, GLint filter, GLenum type,
-                                  const void* texels, const gl::Caps& caps) {
-    // As wide as high, or one row: no table is higher than wide.
-    if (size.x == 0 || size.x > caps.maxTextureSize) {
-        return fail(ErrorCode::InvalidArgument, "a transfer table of " + std::to_string(size.x) +
-                                                    " entries; the device takes 1 to " +
-                                                    std::to_string(caps.maxTextureSize));
-    }
-    return upload2d("transfer table", {format, GL_RGBA, type, filter, 0}, size, texels);
-}
-
 } // namespace
 
 const TexelLayout& texelLayoutOf(TexelFormat format) {
@@ -66,17 +54,34 @@ Result<gl::Texture> uploadClassified(const glm::u8vec4* texels, glm::ivec3 dims,
     return uploadVoxels("classified texels", kClassifiedLayout, dims, texels, caps);
 }
 
-Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, bool wide,
-                                const gl::Caps& caps) {
-    return uploadTable2d({static_cast<std::int64_t>(texels.size()), 1},
-                         wide ? GL_RGBA32F : GL_RGBA16F, GL_NEAREST, GL_FLOAT, texels.data(), caps);
+TableTexels tableTexels(const std::vector<glm::vec4>& texels, bool wide) {
+    const TexelLayout layout = wide ? TexelLayout{GL_RGBA32F, GL_RGBA, GL_FLOAT, GL_NEAREST, 16}
+                                    : TexelLayout{GL_RGBA16F, GL_RGBA, GL_FLOAT, GL_NEAREST, 8};
+    return {texels.data(), {static_cast<int>(texels.size()), 1}, layout};
 }
 
-Result<gl::Texture> uploadSquareTable(const std::vector<glm::u16vec4>& halfs,
-                                      const gl::Caps& caps) {
-    const auto edge = std::llround(std::sqrt(static_cast<double>(halfs.size())));
-    SLABCAST_EXPECTS(edge * edge == static_cast<std::int64_t>(halfs.size()), edge);
-    return uploadTable2d({edge, edge}, GL_RGBA16F, GL_LINEAR, GL_HALF_FLOAT, halfs.data(), caps);
+TableTexels squareTableTexels(const std::vector<glm::u16vec4>& halfs) {
+    const int edge = static_cast<int>(std::lround(std::sqrt(static_cast<double>(halfs.size()))));
+    SLABCAST_EXPECTS(std::int64_t(edge) * edge == static_cast<std::int64_t>(halfs.size()), edge);
+    return {halfs.data(), glm::ivec2(edge), {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, GL_LINEAR, 8}};
+}
+
+Result<void> checkTable(const TableTexels& table, const gl::Caps& caps) {
+    // As wide as high, or one row: no table is higher than wide.
+    if (table.size.x == 0 || table.size.x > caps.maxTextureSize) {
+        return fail(ErrorCode::InvalidArgument,
+                    "a transfer table of " + std::to_string(table.size.x) +
+                        " entries; the device takes 1 to " + std::to_string(caps.maxTextureSize));
+    }
+    return {};
+}
+
+Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, bool wide,
+                                const gl::Caps& caps) {
+    const TableTexels table = tableTexels(texels, wide);
+    return checkTable(table, caps).and_then([&] {
+        return upload2d("transfer table", table.layout, table.size, table.data);
+    });
 }
 
 } // namespace slabcast

@@ -24,11 +24,22 @@ Result<gl::Texture> uploadTexels(const Texels& texels, const gl::Caps& caps);
 Result<gl::Texture> uploadClassified(const glm::u8vec4* texels, glm::ivec3 dims,
                                      const gl::Caps& caps);
 
-/// A transfer table: RGBA16F, or RGBA32F where `wide`; width x 1, for texelFetch on a sampler2D.
+/// A transfer table as it is uploaded; the texels are borrowed.
+struct TableTexels {
+    const void* data = nullptr;
+    glm::ivec2 size{0};
+    TexelLayout layout{};
+};
+
+/// By one value: RGBA16F, or RGBA32F where `wide`; one row, for texelFetch.
+TableTexels tableTexels(const std::vector<glm::vec4>& texels, bool wide);
+/// By both ends of an interval: RGBA16F, as wide as high, filtered.
+TableTexels squareTableTexels(const std::vector<glm::u16vec4>& halfs);
+/// Fails: InvalidArgument (empty, or longer than the device takes).
+Result<void> checkTable(const TableTexels& table, const gl::Caps& caps);
+
+/// A table of one row, checked and uploaded.
 Result<gl::Texture> uploadTable(const std::vector<glm::vec4>& texels, bool wide,
                                 const gl::Caps& caps);
-
-/// A pre-integrated table: RGBA16F, as wide as high, filtered.
-Result<gl::Texture> uploadSquareTable(const std::vector<glm::u16vec4>& halfs, const gl::Caps& caps);
 
 } // namespace slabcast

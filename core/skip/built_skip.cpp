@@ -39,6 +39,7 @@ void keep(BuiltSkip& skip, FreeLengths grid) {
 }
 
 void keep(BuiltSkip& skip, Octree octree) {
+    skip.layout = std::make_shared<const SkipLayout>(layoutOf(octree));
     skip.octree = std::make_shared<const Octree>(std::move(octree));
     skip.generation = nextGeneration();
 }
@@ -114,8 +115,8 @@ int countedLevel(const Octree& octree) {
 }
 
 double visibleFraction(const BuiltSkip& skip, int level) {
-    const auto visible = std::int64_t(visibleNodes(*skip.octree, skip.test, level).size());
-    return fractionOf(visible, skip.octree->levels[level].nodes);
+    return fractionOf(countVisibleNodes(*skip.octree, skip.test, level),
+                      skip.octree->levels[level].nodes);
 }
 
 /// What a TF changes: the merged map, or the test of nodes.

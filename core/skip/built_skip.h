@@ -7,6 +7,7 @@
 #include "core/skip/free_lengths.h"
 #include "core/skip/octree.h"
 #include "core/skip/partitioned_maps.h"
+#include "core/skip/skip_layout.h"
 #include "core/skip/visible_values.h"
 #include "core/volume/volume.h"
 
@@ -29,14 +30,15 @@ struct BuiltSkip {
     std::shared_ptr<const FreeLengths> lengths; // of grids; of partitioned maps as merged
     std::shared_ptr<const PartitionedMaps> maps;
     std::shared_ptr<const Octree> octree;
-    std::shared_ptr<const ValueBins> bins; // of a bitfield octree
-    NodeTest test;                         // what the TF makes of the octree's nodes
-    VisibleValues shown;                   // what a structure of one TF was built for
-    double occupiedFraction = 1.0;         // of blocks or leaves
-    int generation = 0;                    // of what the texture holds; unique in this process
-    bool onGpu = false;                    // where it was built
-    double buildMs = 0.0;                  // all that the first TF took
-    double updateMs = 0.0;                 // what the last TF took, where that was not all
+    std::shared_ptr<const SkipLayout> layout; // of the octree's texture
+    std::shared_ptr<const ValueBins> bins;    // of a bitfield octree
+    NodeTest test;                            // what the TF makes of the octree's nodes
+    VisibleValues shown;                      // what a structure of one TF was built for
+    double occupiedFraction = 1.0;            // of blocks or leaves
+    int generation = 0;                       // of what the texture holds; unique in this process
+    bool onGpu = false;                       // where it was built
+    double buildMs = 0.0;                     // all that the first TF took
+    double updateMs = 0.0;                    // what the last TF took, where that was not all
 
     bool exists() const { return options.structure != SkipStructure::None; }
 };

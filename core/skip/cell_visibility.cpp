@@ -38,21 +38,21 @@ private:
 };
 
 /// Per texel: itself or the next one with alpha, kNone where none follows.
-std::vector<std::uint16_t> nextWithAlpha(const TransferTable& table) {
-    std::vector<std::uint16_t> next(table.texels.size());
+void findNextWithAlpha(const TransferTable& table, std::vector<std::uint16_t>& next) {
+    next.reserve(table.texels.capacity());
+    next.resize(table.texels.size());
     std::uint16_t nearest = kNone;
     for (std::size_t i = next.size(); i-- > 0;) {
         nearest = table.texels[i].a > 0.0F ? std::uint16_t(i) : nearest;
         next[i] = nearest;
     }
-    return next;
 }
 
 /// of(0), of(1), ... of a function that rises with its argument, which is asked only where it may
 /// change: most codes of halves lie between two texels of a table, and an edited TF's frame waits.
 template <class Of>
-std::vector<std::uint16_t> risingValues(std::size_t count, Of of) {
-    std::vector<std::uint16_t> values(count);
+void fillRising(std::vector<std::uint16_t>& values, std::size_t count, Of of) {
+    values.resize(count);
     const auto fillBetween = [&](auto& self, std::size_t first, std::size_t last) -> void {
         if (values[first] == values[last]) {
             std::fill(values.begin() + std::ptrdiff_t(first), values.begin() + std::ptrdiff_t(last),
@@ -67,33 +67,41 @@ std::vector<std::uint16_t> risingValues(std::size_t count, Of of) {
     values.front() = of(0);
     values.back() = of(count - 1);
     fillBetween(fillBetween, 0, count - 1);
-    return values;
 }
 
 } // namespace
 
-CellVisibility cellVisibility(const TexelCodes& codes, const Texels& texels,
-                              const TransferTable& table, double filterErrorSampled) {
+void findVisibility(const TexelCodes& codes, const Texels& texels, const TransferTable& table,
+                    double filterErrorSampled, CellVisibility& into) {
     SLABCAST_EXPECTS(!table.texels.empty() && table.texels.size() <= kNone, table.texels.size());
     SLABCAST_EXPECTS(codes.lowSampled.size() == codes.highSampled.size(), codes.lowSampled.size());
     SLABCAST_EXPECTS(filterErrorSampled >= 0.0, filterErrorSampled);
     const TableReach reach{tableAxis(texels, table)};
-    const std::vector<std::uint16_t> next = nextWithAlpha(table);
+    findNextWithAlpha(table, into.nextWithAlpha);
     const auto firstVisible = [&](std::size_t code) {
-        return next[reach.below(double(codes.lowSampled[code]) - filterErrorSampled)];
+        return into.nextWithAlpha[reach.below(double(codes.lowSampled[code]) - filterErrorSampled)];
     };
     const auto last = [&](std::size_t code) {
         return reach.above(double(codes.highSampled[code]) + filterErrorSampled);
     };
     const std::size_t count = codes.lowSampled.size();
-    return {&codes, risingValues(count, firstVisible), risingValues(count, last)};
+    into.texels = &codes;
+    fillRising(into.firstVisible, count, firstVisible);
+    fillRising(into.reach, count, last);
+}
+
+CellVisibility cellVisibility(const TexelCodes& codes, const Texels& texels,
+                              const TransferTable& table, double filterErrorSampled) {
+    CellVisibility visibility;
+    findVisibility(codes, texels, table, filterErrorSampled, visibility);
+    return visibility;
 }
 
 CellVisibility cellVisibilityOfAlpha(const TexelCodes& alphaCodes) {
     // Alpha is its own table here: every entry but zero is visible, and a cell reaches its largest
     // corner.
-    CellVisibility visibility{&alphaCodes, std::vector<std::uint16_t>(256),
-                              std::vector<std::uint16_t>(256)};
+    CellVisibility visibility{
+        &alphaCodes, std::vector<std::uint16_t>(256), std::vector<std::uint16_t>(256), {}};
     for (std::uint16_t alpha = 0; alpha < 256; ++alpha) {
         visibility.firstVisible[alpha] = std::max<std::uint16_t>(alpha, 1);
         visibility.reach[alpha] = alpha;

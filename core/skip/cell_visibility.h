@@ -18,6 +18,7 @@ struct CellVisibility {
     std::vector<std::uint16_t>
         firstVisible;                 // per code: first visible table texel at or above its low end
     std::vector<std::uint16_t> reach; // per code: last table texel that its high end can reach
+    std::vector<std::uint16_t> nextWithAlpha; // what firstVisible was found with, by table texel
 
     bool visible(std::uint16_t minCode, std::uint16_t maxCode) const {
         return firstVisible[minCode] <= reach[maxCode];
@@ -29,6 +30,10 @@ struct CellVisibility {
 /// in sampled units). At most 65,535 table texels. Tested by: cell_visibility_test.cpp
 CellVisibility cellVisibility(const TexelCodes& codes, const Texels& texels,
                               const TransferTable& table, double filterErrorSampled);
+/// The same in place of another: nothing is allocated where that was of these codes and a table of
+/// this capacity.
+void findVisibility(const TexelCodes& codes, const Texels& texels, const TransferTable& table,
+                    double filterErrorSampled, CellVisibility& into);
 
 /// For pre-classified texels, whose codes are their alpha bytes: any corner with alpha.
 CellVisibility cellVisibilityOfAlpha(const TexelCodes& alphaCodes);

@@ -1,8 +1,8 @@
 #include "core/skip/grid_rebuild.h"
 
 #include <algorithm>
-#include <thread>
 
+#include "core/base/executor.h"
 #include "core/base/parallel.h"
 #include "core/skip/chebyshev.h"
 #include "core/skip/occupancy.h"
@@ -36,7 +36,7 @@ std::int64_t runItems(const BuildStage& stage, std::int64_t from, Clock::time_po
             while (Clock::now() + took < deadline && runOne(took)) {
             }
         };
-        const std::int64_t cores = std::max(1U, std::thread::hardware_concurrency());
+        const std::int64_t cores = executor().concurrency();
         parallelFor(stage.inOrder ? 1 : std::min(cores, stage.items - from - 1), 1,
                     runWhileThereIsTime);
     }

@@ -87,7 +87,7 @@ Result<LiveSkip> LiveSkip::start(LiveSource source, const LiveOptions& options,
         live.always_ = underTransfer(live.always_, visibility); // counts as edits will
     }
     live.shown_ = visibleValues(visibility);
-    live.visibility_ = std::make_shared<const CellVisibility>(std::move(visibility));
+    live.visibility_ = std::make_shared<CellVisibility>(std::move(visibility));
     if (hasStructure(options.settled) && present.options == options.settled) {
         live.settled_ = present;
         live.settledFraction_ = live.always_.occupiedFraction;
@@ -126,21 +126,25 @@ Result<void> LiveSkip::build(const CellVisibility& visibility, const BuiltSkip& 
         });
 }
 
-void LiveSkip::edit(CellVisibility visibility) {
-    VisibleValues shown = visibleValues(visibility);
-    if (shown == shown_) {
+void LiveSkip::edit(const CellVisibility& visibility) {
+    findVisibleValues(visibility, spareShown_);
+    if (spareShown_ == shown_) {
         return; // other colours: what is begun goes on
     }
-    shown_ = std::move(shown);
+    std::swap(shown_, spareShown_);
     rebuild_.reset();
     incoming_ = noSkip();
     framesSinceEdit_ = 0;
-    visibility_ = std::make_shared<const CellVisibility>(std::move(visibility));
+    if (visibility_.use_count() == 1) {
+        *visibility_ = visibility; // into what is allocated
+    } else {
+        visibility_ = std::make_shared<CellVisibility>(visibility);
+    }
     settledServes_ = settled_.exists() && settled_.shown == shown_;
     if (settledServes_) {
         return;
     }
-    always_ = underTransfer(always_, *visibility_);
+    always_ = underTransfer(std::move(always_), *visibility_);
     // What was free then is free now.
     settledServes_ = settled_.exists() && covers(settled_.shown, shown_) &&
                      always_.occupiedFraction >= kTightEnough * settledFraction_;

@@ -49,7 +49,7 @@ public:
 
     /// Takes another TF, given as the codes that it makes visible. Cost: O(codes), and O(blocks x
     /// partitions) where partitioned maps are merged.
-    void edit(CellVisibility visibility);
+    void edit(const CellVisibility& visibility);
 
     /// To be called once a frame. Rebuilds for about `budgetMs`: at least one slice of blocks,
     /// nothing at 0. A rebuilt structure serves after the frames that its upload takes.
@@ -83,8 +83,9 @@ private:
 
     LiveSource source_;
     LiveOptions options_;
-    std::shared_ptr<const CellVisibility> visibility_; // of now
-    VisibleValues shown_;                              // of now
+    std::shared_ptr<CellVisibility> visibility_; // of now
+    VisibleValues shown_;                        // of now
+    VisibleValues spareShown_;                   // of no use: room for the next
     BuiltSkip always_;
     BuiltSkip settled_ = noSkip();
     double settledFraction_ = 0.0; // that always_ found occupied when settled_ began to serve

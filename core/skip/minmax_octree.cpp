@@ -6,8 +6,6 @@ namespace slabcast {
 
 namespace {
 
-using Code = std::uint16_t;
-
 struct Span {
     int first;
     int end;
@@ -20,11 +18,11 @@ Span voxelsNearLeaf(int leaf, int edge, int dims) {
     return {std::max(0, leaf * edge - 2), std::min(dims, (leaf + 1) * edge + 2)};
 }
 
-constexpr auto kLesser = [](Code a, Code b) { return std::min(a, b); };
-constexpr auto kGreater = [](Code a, Code b) { return std::max(a, b); };
+constexpr auto kLesser = [](auto a, auto b) { return std::min(a, b); };
+constexpr auto kGreater = [](auto a, auto b) { return std::max(a, b); };
 
 /// Picks one of `span` rows place by place: row r is the `count` places from rows + r * count.
-template <class Pick>
+template <class Code, class Pick>
 void pickOfRows(const Code* rows, std::int64_t count, Span span, Pick pick, Code* __restrict to) {
     const Code* row = rows + span.first * count;
     std::copy(row, row + count, to);
@@ -37,7 +35,7 @@ void pickOfRows(const Code* rows, std::int64_t count, Span span, Pick pick, Code
 }
 
 /// Picks along a row for each of its leaves: as voxelsNearLeaf(), in runs of four voxels.
-template <class Pick>
+template <class Code, class Pick>
 class RowOfLeaves {
 public:
     RowOfLeaves(int dims, int edge, int leaves, Pick pick)
@@ -78,18 +76,17 @@ private:
 
 /// One code for each leaf of the slices of leaves `slab`: reduced in x and y slice by slice of
 /// voxels, then in z.
-template <class Pick>
-std::vector<Code> pickOfSlab(const TexelCodes& codes, int edge, glm::ivec3 leaves, Span slab,
-                             Pick pick) {
-    const glm::ivec3 dims = codes.dims;
+template <class Code, class Pick>
+std::vector<Code> pickOfSlab(const Code* codes, glm::ivec3 dims, int edge, glm::ivec3 leaves,
+                             Span slab, Pick pick) {
     const auto perSlice = std::int64_t(leaves.x) * leaves.y;
     const int first = voxelsNearLeaf(slab.first, edge, dims.z).first;
     const int end = voxelsNearLeaf(slab.end - 1, edge, dims.z).end;
     std::vector<Code> slices(std::size_t((end - first) * perSlice));
-    RowOfLeaves along(dims.x, edge, leaves.x, pick);
+    RowOfLeaves<Code, Pick> along(dims.x, edge, leaves.x, pick);
     Code* row = slices.data();
     for (int z = first; z < end; ++z) {
-        const Code* slice = codes.codes.data() + std::int64_t(z) * dims.y * dims.x;
+        const Code* slice = codes + std::int64_t(z) * dims.y * dims.x;
         for (int y = 0; y < leaves.y; ++y, row += leaves.x) {
             pickOfRows(slice, dims.x, voxelsNearLeaf(y, edge, dims.y), pick, along.row());
             along.pick(row);
@@ -110,12 +107,14 @@ Result<OctreeLevel> rangesOfLeaves(const TexelCodes& codes, int edge, const Canc
     OctreeLevel level{leaves, std::vector<std::uint32_t>(std::size_t(leaves.z * perSlice))};
     const auto reduceSlab = [&](std::int64_t begin, std::int64_t end) {
         const Span slab{int(begin), int(end)};
-        const std::vector<Code> least = pickOfSlab(codes, edge, leaves, slab, kLesser);
-        const std::vector<Code> greatest = pickOfSlab(codes, edge, leaves, slab, kGreater);
-        std::transform(least.begin(), least.end(), greatest.begin(),
-                       level.words.data() + begin * perSlice, [](Code low, Code high) {
-                           return NodeRange{low, high}.word();
-                       });
+        codes.visit([&](const auto* code) {
+            const auto least = pickOfSlab(code, codes.dims, edge, leaves, slab, kLesser);
+            const auto greatest = pickOfSlab(code, codes.dims, edge, leaves, slab, kGreater);
+            std::transform(least.begin(), least.end(), greatest.begin(),
+                           level.words.data() + begin * perSlice, [](auto low, auto high) {
+                               return NodeRange{low, high}.word();
+                           });
+        });
     };
     // Slabs share the four slices between them, and a small volume is not worth a second thread.
     constexpr std::int64_t kSlices = 32;
@@ -155,7 +154,7 @@ Result<Octree> buildMinMaxOctree(const TexelCodes& codes, const SkipOptions& opt
                                  const CancelToken* cancel) {
     const auto voxels = std::int64_t(codes.dims.x) * codes.dims.y * codes.dims.z;
     SLABCAST_EXPECTS(voxels > 0, voxels);
-    SLABCAST_EXPECTS(std::int64_t(codes.codes.size()) == voxels, voxels);
+    SLABCAST_EXPECTS(codes.count() == voxels, voxels);
     SLABCAST_EXPECTS(options.blockEdgeVoxels > 0, options.blockEdgeVoxels);
     Result<OctreeLevel> leaves = rangesOfLeaves(codes, options.blockEdgeVoxels, cancel);
     if (!leaves) {
@@ -175,8 +174,8 @@ Result<Octree> buildMinMaxOctree(const TexelCodes& codes, const SkipOptions& opt
 NodeTest minMaxNodeTest(const CellVisibility& visibility) {
     // A cell [a, b] is visible iff firstVisible[a] <= reach[b], and both rise with the code: then b
     // reaches the first visible texel of all, and one lies at or above a.
-    const std::vector<Code>& first = visibility.firstVisible;
-    const std::vector<Code>& reach = visibility.reach;
+    const std::vector<std::uint16_t>& first = visibility.firstVisible;
+    const std::vector<std::uint16_t>& reach = visibility.reach;
     const auto least = std::lower_bound(reach.begin(), reach.end(), first.front());
     const auto above = std::upper_bound(first.begin(), first.end(), reach.back());
     // Where nothing is visible, `least` is one more than any code.

@@ -24,21 +24,6 @@ void forNodes(glm::ivec3 first, glm::ivec3 end, Visit visit) {
     }
 }
 
-/// Calls visit(child) for the children of `nodes`, nodes of the level above `level`, that are not
-/// free.
-template <class Visit>
-void forVisibleChildren(const Octree& octree, const NodeTest& test, int level,
-                        const std::vector<glm::ivec3>& nodes, Visit visit) {
-    for (const glm::ivec3 node : nodes) {
-        forNodes(2 * node, glm::min(2 * node + 2, octree.levels[level].nodes),
-                 [&](glm::ivec3 child) {
-                     if (!isFree(octree, test, level, child)) {
-                         visit(child);
-                     }
-                 });
-    }
-}
-
 } // namespace
 
 bool isFree(const Octree& octree, const std::uint32_t* node, const NodeTest& test) {
@@ -66,31 +51,38 @@ int keptLevels(glm::ivec3 leaves, int initialLevel) {
     return std::max(1, levelsToRoot(leaves) - initialLevel);
 }
 
-std::vector<glm::ivec3> visibleNodes(const Octree& octree, const NodeTest& test, int level) {
+void forVisibleNodes(const Octree& octree, const NodeTest& test, int level,
+                     FunctionRef<void(glm::ivec3)> visit) {
     SLABCAST_EXPECTS(level >= 0 && level <= octree.coarsest(), level);
+    const auto descend = [&](auto& self, int at, glm::ivec3 first, glm::ivec3 end) -> void {
+        forNodes(first, glm::min(end, octree.levels[at].nodes), [&](glm::ivec3 node) {
+            if (isFree(octree, test, at, node)) {
+                return;
+            }
+            if (at == level) {
+                visit(node);
+            } else {
+                self(self, at - 1, 2 * node, 2 * node + 2);
+            }
+        });
+    };
+    descend(descend, octree.coarsest(), glm::ivec3(0), octree.levels.back().nodes);
+}
+
+std::vector<glm::ivec3> visibleNodes(const Octree& octree, const NodeTest& test, int level) {
     std::vector<glm::ivec3> nodes;
-    forNodes(glm::ivec3(0), octree.levels.back().nodes, [&](glm::ivec3 node) {
-        if (!isFree(octree, test, octree.coarsest(), node)) {
-            nodes.push_back(node);
-        }
-    });
-    for (int below = octree.coarsest() - 1; below >= level; --below) {
-        std::vector<glm::ivec3> children;
-        forVisibleChildren(octree, test, below, nodes,
-                           [&](glm::ivec3 child) { children.push_back(child); });
-        nodes = std::move(children);
-    }
+    forVisibleNodes(octree, test, level, [&](glm::ivec3 node) { nodes.push_back(node); });
     return nodes;
 }
 
-std::int64_t visibleLeaves(const Octree& octree, const NodeTest& test) {
-    if (octree.coarsest() == 0) {
-        return std::int64_t(visibleNodes(octree, test, 0).size());
-    }
+std::int64_t countVisibleNodes(const Octree& octree, const NodeTest& test, int level) {
     std::int64_t count = 0;
-    forVisibleChildren(octree, test, 0, visibleNodes(octree, test, 1),
-                       [&](glm::ivec3 /*leaf*/) { ++count; });
+    forVisibleNodes(octree, test, level, [&](glm::ivec3 /*node*/) { ++count; });
     return count;
+}
+
+std::int64_t visibleLeaves(const Octree& octree, const NodeTest& test) {
+    return countVisibleNodes(octree, test, 0);
 }
 
 } // namespace slabcast

@@ -5,6 +5,8 @@
 
 #include <glm/glm.hpp>
 
+#include "core/base/function_ref.h"
+
 namespace slabcast {
 
 /// What a node says of the visible cells, or values, that meet it grown by one voxel.
@@ -66,6 +68,11 @@ int keptLevels(glm::ivec3 leaves, int initialLevel);
 /// Nodes of a level that are not free, found from the coarsest level down. Cost: O(those, and their
 /// ancestors). Tested by: octree_test.cpp
 std::vector<glm::ivec3> visibleNodes(const Octree& octree, const NodeTest& test, int level);
+
+/// The same one by one, and how many; allocate nothing.
+void forVisibleNodes(const Octree& octree, const NodeTest& test, int level,
+                     FunctionRef<void(glm::ivec3)> visit);
+std::int64_t countVisibleNodes(const Octree& octree, const NodeTest& test, int level);
 
 std::int64_t visibleLeaves(const Octree& octree, const NodeTest& test);
 

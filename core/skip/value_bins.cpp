@@ -10,21 +10,23 @@ namespace slabcast {
 
 CodeRange codeRange(const TexelCodes& codes) {
     constexpr std::int64_t kGrain = 1 << 18;
-    SLABCAST_EXPECTS(!codes.codes.empty(), codes.codes.size());
-    std::mutex mutex;
-    CodeRange range{codes.codes.front(), codes.codes.front()};
-    parallelFor(std::int64_t(codes.codes.size()), kGrain,
-                [&](std::int64_t begin, std::int64_t end) {
-                    CodeRange part{codes.codes[begin], codes.codes[begin]};
-                    for (std::int64_t i = begin; i < end; ++i) {
-                        part.least = std::min(part.least, codes.codes[i]);
-                        part.most = std::max(part.most, codes.codes[i]);
-                    }
-                    const std::lock_guard lock(mutex);
-                    range.least = std::min(range.least, part.least);
-                    range.most = std::max(range.most, part.most);
-                });
-    return range;
+    SLABCAST_EXPECTS(codes.count() > 0, codes.count());
+    return codes.visit([&](const auto* code) {
+        std::mutex mutex;
+        CodeRange range{*code, *code};
+        parallelFor(codes.count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+            auto least = code[begin];
+            auto most = code[begin];
+            for (std::int64_t i = begin; i < end; ++i) {
+                least = std::min(least, code[i]);
+                most = std::max(most, code[i]);
+            }
+            const std::lock_guard lock(mutex);
+            range.least = std::min(range.least, std::uint16_t(least));
+            range.most = std::max(range.most, std::uint16_t(most));
+        });
+        return range;
+    });
 }
 
 ValueBins valueBins(const TexelCodes& codes, CodeRange range, int count, bool separateMinimum,

@@ -12,9 +12,9 @@ namespace slabcast {
 //
 // Hence where two TFs show a cell differently they differ in one of these within it, whose lower
 // code lies between the cell's corners.
-VisibleValues visibleValues(const CellVisibility& visibility) {
+void findVisibleValues(const CellVisibility& visibility, VisibleValues& values) {
     const std::size_t codes = visibility.reach.size();
-    VisibleValues values{std::vector<std::uint8_t>(codes)};
+    values.shown.resize(codes);
     for (std::size_t c = 0; c < codes; ++c) {
         const bool alone = visibility.firstVisible[c] <= visibility.reach[c];
         const bool withNext =
@@ -22,6 +22,11 @@ VisibleValues visibleValues(const CellVisibility& visibility) {
         values.shown[c] = std::uint8_t(alone * VisibleValues::kAlone) |
                           std::uint8_t(withNext * VisibleValues::kWithNext);
     }
+}
+
+VisibleValues visibleValues(const CellVisibility& visibility) {
+    VisibleValues values;
+    findVisibleValues(visibility, values);
     return values;
 }
 

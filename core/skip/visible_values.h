@@ -23,6 +23,8 @@ struct VisibleValues {
 
 /// Cost: O(codes). Tested by: live_skip_test.cpp
 VisibleValues visibleValues(const CellVisibility& visibility);
+/// The same in place of others: nothing is allocated where those were of as many codes.
+void findVisibleValues(const CellVisibility& visibility, VisibleValues& values);
 
 /// Whether `all` shows every cell that `some` shows. Cost: O(codes).
 bool covers(const VisibleValues& all, const VisibleValues& some);

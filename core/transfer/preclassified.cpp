@@ -131,9 +131,11 @@ ClassifiedTexels classify(const Texels& texels, const VolumeGeometry& geometry,
 TexelCodes alphaCodes(const ClassifiedTexels& classified) {
     TexelCodes result;
     result.dims = classified.dims;
-    result.codes.resize(classified.texels.size());
-    std::transform(classified.texels.begin(), classified.texels.end(), result.codes.begin(),
+    const auto alphas = std::make_shared<std::vector<std::uint8_t>>(classified.texels.size());
+    std::transform(classified.texels.begin(), classified.texels.end(), alphas->begin(),
                    [](glm::u8vec4 texel) { return texel.w; });
+    result.bytes = *alphas;
+    result.owner = alphas;
     for (int code = 0; code < 256; ++code) {
         result.lowSampled.push_back(static_cast<float>(code) / 255.0F);
     }

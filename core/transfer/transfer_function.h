@@ -84,6 +84,9 @@ double extinctionUnitPerMm(const TransferFunction& tf);
 /// texel to the next; a gap narrower than a texel is filled. Tested by: transfer_table_test.cpp
 TransferTable makeTable(const TransferFunction& tf, double dataMin, double dataMax,
                         bool integerData, CompositingSpace space, int maxSize = 4096);
+/// The same in place of another table: nothing is allocated where that was made with this size.
+void makeTable(const TransferFunction& tf, double dataMin, double dataMax, bool integerData,
+               CompositingSpace space, int maxSize, TransferTable& table);
 
 /// Linear texture lookup of the table, as the shader does it, in float64: colour, and extinction in
 /// 1/mm.

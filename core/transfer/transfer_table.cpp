@@ -80,25 +80,36 @@ glm::vec4 narrowed(const glm::vec4& t) {
 /// Gives every peak that lies between two texels and above both to the nearer one, but not to an
 /// end texel: that holds for all values beyond. The first point
 /// of a step belongs to the interval on its left: at its own value the second one holds.
-void keepNarrowPeaks(const TransferFunction& tf, const Span& span,
-                     std::vector<TransferSample>& samples) {
+/// `give(texel, point)` is called for these, the highest of a texel last.
+template <class Give>
+void forNarrowPeaks(const TransferFunction& tf, const Span& span, const TransferTable& table,
+                    Give give) {
     if (span.size < 3) {
         return; // end texels only
     }
-    const std::vector<TransferSample> plain = samples; // what the TF is at the texels
+    const auto opacityAt = [&](std::size_t texel) {
+        return evaluate(tf, table.valueAt(texel)).opacity;
+    };
+    std::size_t texel = 0; // that the last peak was nearest to, and what it shows so far
+    double shown = 0.0;
     for (const TransferPoint& point : tf.points) {
         const double position = span.positionOf(point.value);
         if (position <= 0.0 || position > span.size - 1) {
             continue;
         }
         const auto right = static_cast<std::size_t>(std::ceil(position));
-        if (point.opacity <= std::max(plain[right - 1].opacity, plain[right].opacity)) {
+        if (point.opacity <= std::max(opacityAt(right - 1), opacityAt(right))) {
             continue;
         }
-        TransferSample& nearest = samples[static_cast<std::size_t>(
-            std::clamp(std::lround(position), 1L, span.size - 2L))];
-        if (point.opacity > nearest.opacity) {
-            nearest = {point.color, point.opacity};
+        const auto nearest =
+            static_cast<std::size_t>(std::clamp(std::lround(position), 1L, span.size - 2L));
+        if (nearest != texel) { // points are sorted: no peak of an earlier one follows
+            texel = nearest;
+            shown = opacityAt(texel);
+        }
+        if (point.opacity > shown) {
+            shown = point.opacity;
+            give(texel, point);
         }
     }
 }
@@ -114,8 +125,8 @@ double extinctionUnitPerMm(const TransferFunction& tf) {
     return most > 0.0 ? std::ldexp(1.0, std::ilogb(most) - kLargestExponent) : 1.0;
 }
 
-TransferTable makeTable(const TransferFunction& tf, double dataMin, double dataMax,
-                        bool integerData, CompositingSpace space, int maxSize) {
+void makeTable(const TransferFunction& tf, double dataMin, double dataMax, bool integerData,
+               CompositingSpace space, int maxSize, TransferTable& table) {
     SLABCAST_EXPECTS(!tf.points.empty(), tf.points.size());
     SLABCAST_EXPECTS(dataMin <= dataMax, dataMax - dataMin);
     SLABCAST_EXPECTS(maxSize >= 4, maxSize);
@@ -125,19 +136,32 @@ TransferTable makeTable(const TransferFunction& tf, double dataMin, double dataM
         const glm::vec4 texel = texelOf(sample, tf, unitPerMm, space);
         return wide ? texel : narrowed(texel);
     };
+    table.extinctionPerMm = unitPerMm;
+    table.wide = wide;
+    table.texels.reserve(static_cast<std::size_t>(maxSize)); // the next one may be longer
     const std::optional<Span> span = spanFor(tf, dataMin, dataMax, integerData, maxSize);
     if (!span) {
         const double width = std::max(1.0, std::abs(dataMin) * 1e-3); // any that is not zero
-        return {dataMin, dataMin + width, {2, toTexel(evaluate(tf, dataMin))}, unitPerMm, wide};
+        table.firstValue = dataMin;
+        table.lastValue = dataMin + width;
+        table.texels.assign(2, toTexel(evaluate(tf, dataMin)));
+        return;
     }
-    TransferTable table{span->first, span->last, std::vector<glm::vec4>(span->size), unitPerMm,
-                        wide};
-    std::vector<TransferSample> samples;
+    table.firstValue = span->first;
+    table.lastValue = span->last;
+    table.texels.resize(static_cast<std::size_t>(span->size));
     for (std::size_t texel = 0; texel < table.texels.size(); ++texel) {
-        samples.push_back(evaluate(tf, table.valueAt(texel)));
+        table.texels[texel] = toTexel(evaluate(tf, table.valueAt(texel)));
     }
-    keepNarrowPeaks(tf, *span, samples);
-    std::transform(samples.begin(), samples.end(), table.texels.begin(), toTexel);
+    forNarrowPeaks(tf, *span, table, [&](std::size_t texel, const TransferPoint& point) {
+        table.texels[texel] = toTexel({point.color, point.opacity});
+    });
+}
+
+TransferTable makeTable(const TransferFunction& tf, double dataMin, double dataMax,
+                        bool integerData, CompositingSpace space, int maxSize) {
+    TransferTable table;
+    makeTable(tf, dataMin, dataMax, integerData, space, maxSize, table);
     return table;
 }
 

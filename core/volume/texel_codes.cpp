@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
+#include <utility>
 
 #include "core/base/bits.h"
 #include "core/base/parallel.h"
@@ -106,19 +108,25 @@ float floatAt(std::int64_t order) {
 
 } // namespace
 
-TexelCodes encodeCodes(const Texels& texels) {
+TexelCodes encodeCodes(const Texels& texels, std::shared_ptr<const void> owner) {
     SLABCAST_EXPECTS(!texels.data.empty(), texels.data.size());
     return visitTexelFormat(texels.format, [&](auto codec) {
         const auto coder = coderFor(texels, codec);
         const auto* data = texelData(texels, codec);
         TexelCodes result;
         result.dims = texels.dims;
-        result.codes.resize(texels.data.size() / bytesPerTexel(texels.format));
-        parallelFor(static_cast<std::int64_t>(result.codes.size()), kGrain,
-                    [&](std::int64_t begin, std::int64_t end) {
-                        std::transform(data + begin, data + end, result.codes.data() + begin,
-                                       [&](auto texel) { return coder.code(texel); });
-                    });
+        const std::size_t count = texels.data.size() / bytesPerTexel(texels.format);
+        if constexpr (std::is_same_v<decltype(data), const std::uint8_t*>) {
+            result.bytes = {data, count};
+            result.owner = std::move(owner);
+        } else {
+            result.codes.resize(count);
+            parallelFor(static_cast<std::int64_t>(count), kGrain,
+                        [&](std::int64_t begin, std::int64_t end) {
+                            std::transform(data + begin, data + end, result.codes.data() + begin,
+                                           [&](auto texel) { return coder.code(texel); });
+                        });
+        }
         for (std::size_t code = 0; code < coder.kCount; ++code) {
             result.lowSampled.push_back(coder.low(code));
             result.highSampled.push_back(coder.high(code));

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "core/volume/statistics.h"
@@ -49,12 +51,26 @@ double decodedValue(const Texels& texels, glm::ivec3 voxel);
 /// R32fExact, whose floats are binned.
 struct TexelCodes {
     glm::ivec3 dims{0};
-    std::vector<std::uint16_t> codes;
-    std::vector<float> lowSampled; // 65,536 entries, or 256 for 8-bit texels
+    std::vector<std::uint16_t> codes;    // x fastest; empty where they are bytes
+    std::span<const std::uint8_t> bytes; // of 8-bit texels, instead
+    std::shared_ptr<const void> owner;   // of the bytes; none: the caller sees to that
+    std::vector<float> lowSampled;       // 65,536 entries, or 256 for 8-bit texels
     std::vector<float> highSampled;
+
+    std::int64_t count() const {
+        return static_cast<std::int64_t>(bytes.empty() ? codes.size() : bytes.size());
+    }
+    /// Calls visit(pointer) with the codes as they are held.
+    template <class Visitor>
+    decltype(auto) visit(Visitor&& visitor) const {
+        return bytes.empty() ? visitor(codes.data()) : visitor(bytes.data());
+    }
 };
 
-TexelCodes encodeCodes(const Texels& texels);
+/// 8-bit texels are their own codes, which take no memory then: they are `owner`'s, or the caller
+/// keeps them. Others take 2 bytes each. Cost: one pass, all cores; none of 8-bit texels.
+/// Tested by: texels_test.cpp
+TexelCodes encodeCodes(const Texels& texels, std::shared_ptr<const void> owner = nullptr);
 
 /// Of binned floats, per code: the least float that has this code or a greater one, infinity where
 /// none has. Cost: O(codes), all cores. Tested by: gpu_builder_gl_test.cpp

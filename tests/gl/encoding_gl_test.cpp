@@ -38,7 +38,7 @@ public:
     }
     Picture read() const {
         gl::BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-        gl::StateGuard::usePlainPixelTransfer();
+        gl::StateGuard::usePlainPacking();
         Picture picture{kSmall, std::vector<glm::vec4>(std::size_t(kSmall.x) * kSmall.y)};
         if (format_ == GL_RGBA16F) {
             gl::ReadPixels(0, 0, kSmall.x, kSmall.y, GL_RGBA, GL_FLOAT, picture.pixels.data());

@@ -238,7 +238,8 @@ TEST_F(StateGuardGl, PlainPixelTransferIsPlain) {
     const Owner host(1);
     host.bindAll();
     host.setAll();
-    gl::StateGuard::usePlainPixelTransfer();
+    gl::StateGuard::usePlainUnpacking();
+    gl::StateGuard::usePlainPacking();
     const Snapshot state = snapshot();
     for (const char* name :
          {"unpack buffer", "pack buffer", "unpack row length", "unpack image height",
@@ -260,10 +261,10 @@ TEST_F(StateGuardGl, UnitsBeyondTheRestoredKeepTheirTextures) {
         const gl::StateGuard guard;
         gl::ColorTargets layer;
         EXPECT_TRUE(layer.resize(4, 4, {GL_RGBA8}).has_value());
+        EXPECT_TRUE(uploadTable({glm::vec4(1.0F)}, false, caps()).has_value());
+        const glm::u8vec4 colour(1);
+        EXPECT_TRUE(uploadClassified(&colour, {1, 1, 1}, caps()).has_value());
     }
-    EXPECT_TRUE(uploadTable({glm::vec4(1.0F)}, false, caps()).has_value());
-    const glm::u8vec4 colour(1);
-    EXPECT_TRUE(uploadClassified(&colour, {1, 1, 1}, caps()).has_value());
     EXPECT_EQ(integer(GL_ACTIVE_TEXTURE), GL_TEXTURE9);
     EXPECT_EQ(integer(GL_TEXTURE_BINDING_2D), static_cast<GLint>(host.plane.id()));
     EXPECT_EQ(integer(GL_TEXTURE_BINDING_3D), static_cast<GLint>(host.volume.id()));

@@ -208,12 +208,12 @@ TEST(AlphaCodes, AreTheAlphaBytes) {
                                                  makeTable(tf, 0.0, 1.0, false, kDisplay));
     const TexelCodes codes = alphaCodes(classified);
     ASSERT_EQ(codes.dims, volume.geometry.dims);
-    ASSERT_EQ(codes.codes.size(), 64U);
+    ASSERT_EQ(codes.bytes.size(), 64U);
     for (std::size_t i = 0; i < 64; ++i) {
-        EXPECT_EQ(codes.codes[i], classified.texels[i].w);
+        EXPECT_EQ(codes.bytes[i], classified.texels[i].w);
     }
-    EXPECT_EQ(codes.codes[0], 0);
-    EXPECT_GT(codes.codes[15], 200);
+    EXPECT_EQ(codes.bytes[0], 0);
+    EXPECT_GT(codes.bytes[15], 200);
     ASSERT_EQ(codes.lowSampled.size(), 256U);
     EXPECT_EQ(codes.lowSampled[51], 0.2F);
     EXPECT_EQ(codes.highSampled[255], 1.0F);

@@ -295,15 +295,19 @@ void expectCodesBracketTheirTexels(const Volume& volume, TexelFormat format) {
             ASSERT_LE(codes.highSampled[c - 1], codes.highSampled[c]) << c;
         }
     }
-    for (std::size_t i = 0; i < codes.codes.size(); ++i) {
+    ASSERT_EQ(codes.bytes.empty(), format != TexelFormat::R8);
+    const auto codeAt = [&](std::size_t i) {
+        return codes.visit([=](const auto* all) { return std::uint16_t(all[i]); });
+    };
+    for (std::size_t i = 0; i < std::size_t(codes.count()); ++i) {
         const double sampled = sampledByDefinition(texels, i);
-        const std::uint16_t code = codes.codes[i];
+        const std::uint16_t code = codeAt(i);
         ASSERT_LE(codes.lowSampled[code], static_cast<float>(sampled));
         ASSERT_GE(codes.highSampled[code], static_cast<float>(sampled));
         if (i > 0) {
             const double before = sampledByDefinition(texels, i - 1);
-            ASSERT_TRUE(before < sampled ? codes.codes[i - 1] <= code
-                                         : codes.codes[i - 1] >= code || before == sampled);
+            ASSERT_TRUE(before < sampled ? codeAt(i - 1) <= code
+                                         : codeAt(i - 1) >= code || before == sampled);
         }
     }
 }
@@ -330,6 +334,18 @@ TEST(EncodeCodes, OfIntegersAreTheIntegers) {
         EXPECT_EQ(encodeCodes(encoded(volume, format)).codes,
                   (std::vector<std::uint16_t>{0, 1, 258, 65535}));
     }
+}
+
+// What a 512^3 volume of 8 bits keeps on the host is 128 MB of texels, not 256 MB of codes beside.
+TEST(EncodeCodes, OfBytesAreTheTexelsThemselves) {
+    const auto texels = std::make_shared<const Texels>(
+        encoded(volumeOf<std::uint8_t>(VoxelType::U8, {3, 0, 255, 7}), TexelFormat::R8));
+    const TexelCodes codes = encodeCodes(*texels, texels);
+    EXPECT_TRUE(codes.codes.empty());
+    EXPECT_EQ(codes.count(), 4);
+    EXPECT_EQ(static_cast<const void*>(codes.bytes.data()), texels->data.data());
+    EXPECT_EQ(texels.use_count(), 2); // kept, whoever lets go of them
+    EXPECT_EQ(codes.bytes[2], 255);
 }
 
 TEST(EncodeCodes, HalvesOrderLikeTheirValuesAndStayFinite) {

@@ -62,7 +62,7 @@ std::vector<std::uint32_t> nodesOf(const std::vector<std::uint32_t>& texels,
 Result<std::vector<std::uint32_t>> downloadTexels(const SkipTexture& structure,
                                                   const SkipLayout& layout) {
     const gl::StateGuard guard;
-    gl::StateGuard::usePlainPixelTransfer();
+    gl::StateGuard::usePlainPacking();
     gl::takeError();
     gl::MemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT);
     const gl::Framebuffer target = gl::Framebuffer::make("skip download");

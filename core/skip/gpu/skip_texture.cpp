@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "core/gl/state_guard.h"
-
 namespace slabcast {
 
 namespace {
@@ -79,10 +77,7 @@ Result<void> checkFits(const SkipLayout& layout, const gl::Caps& caps) {
 Result<SkipTexture> allocateSkip(const char* label, const SkipLayout& layout,
                                  const gl::Caps& caps) {
     return checkFits(layout, caps)
-        .and_then([&] {
-            const gl::StateGuard guard;
-            return allocate3d(label, texelLayoutOf(layout), layout.texels);
-        })
+        .and_then([&] { return allocate3d(label, texelLayoutOf(layout), layout.texels); })
         .map([&](gl::Texture&& texture) {
             return SkipTexture{std::move(texture), layout.bytes()};
         });

@@ -27,7 +27,7 @@ Result<void> checkFits(const SkipLayout& layout, const gl::Caps& caps);
 /// A texture of that layout, without content. Fails: VolumeTooLarge, DeviceOutOfMemory.
 Result<SkipTexture> allocateSkip(const char* label, const SkipLayout& layout, const gl::Caps& caps);
 
-/// Leave the GL state as they found it, and clear error flags that were up before. Fail:
+/// Like the uploads of core/gl/texture_upload.h. Fail:
 /// VolumeTooLarge, DeviceOutOfMemory, Internal (another GL error). Tested by:
 /// gpu_builder_gl_test.cpp
 Result<SkipTexture> uploadFreeLengths(const FreeLengths& lengths, const gl::Caps& caps);
