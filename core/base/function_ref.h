@@ -7,6 +7,7 @@
 namespace slabcast {
 
 /// A function of the caller's, borrowed for the length of a call: nothing is copied or allocated.
+/// Tested by: executor_test.cpp
 template <class Signature>
 class FunctionRef;
 
