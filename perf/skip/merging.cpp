@@ -49,12 +49,17 @@ TransferFunction bands(const VolumeStatistics& s, std::vector<std::array<double,
 std::vector<NamedTransfer> transfersOf(const Scene& scene, const TransferFunction& other) {
     const VolumeStatistics& s = scene.statistics();
     const TransferFunction& own = scene.look().tf;
-    return {{{"TF1", "all but the minimum"}, bands(s, {{kMinimumShare, 1.0}})},
-            {{"TF2", "all"}, bands(s, {{0.0, 1.0}})},
-            {{"TF3", "upper half"}, bands(s, {{0.5, 1.0}})},
-            {{"TF4", "second and fourth quarter"}, bands(s, {{0.25, 0.5}, {0.75, 1.0}})},
-            {{"TF5", own.name}, own},
-            {{"TF6", other.name}, other}};
+    std::vector<NamedTransfer> all;
+    const auto add = [&](const char* key, const std::string& name, TransferFunction tf) {
+        all.push_back({{key, name}, std::move(tf)});
+    };
+    add("TF1", "all but the minimum", bands(s, {{kMinimumShare, 1.0}}));
+    add("TF2", "all", bands(s, {{0.0, 1.0}}));
+    add("TF3", "upper half", bands(s, {{0.5, 1.0}}));
+    add("TF4", "second and fourth quarter", bands(s, {{0.25, 0.5}, {0.75, 1.0}}));
+    add("TF5", own.name, own);
+    add("TF6", other.name, other);
+    return all;
 }
 
 /// Ways to the same distances under a transfer function, timed again and again.
