@@ -130,7 +130,7 @@ class ScriptTest(Folder):
 
     def test_a_single_replay_adds_up(self):
         """Of several replays rows hold medians of each part, which need not."""
-        run = edit(*SMALL, "--interpolate", "linear,angio", "--frames", 8, "--replays", 1, "--out", self.out)
+        run = edit(*SMALL, "--interpolate", "linear,angio", "--frames", 20, "--replays", 1, "--out", self.out)
         self.assertEqual(run.returncode, 0, run.stderr)
         report = self.report()
         for row in report["rows"]:
@@ -204,7 +204,7 @@ class RefusalTest(Folder):
                 ({"start": BONE, "steps": [{"kind": "jump", "frames": 1, "to": {"points": []}}]},
                  r"steps\[0\]\.to: points: expected a list")):
             with self.subTest(content=content):
-                self.refuses(cause, "--script", self.script(content))
+                self.refuses(cause, "--script", self.script(content), status=2)
 
     def test_script_that_is_not_there(self):
         self.refuses("nowhere.json: no such script", "--script", self.folder / "nowhere.json")
@@ -217,7 +217,8 @@ class RefusalTest(Folder):
         self.assertEqual(run.returncode, 2)
 
     def test_preclassified_texels_hold_the_transfer_function(self):
-        self.refuses("pre-classified texels hold the transfer function", "--classify", "preclassified")
+        self.refuses("pre-classified texels hold the transfer function", "--classify", "preclassified",
+                     status=2)
 
     def test_structures_that_cannot_serve(self):
         for structure in ("boolean-octree", "none"):

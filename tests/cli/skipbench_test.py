@@ -275,14 +275,18 @@ class RefusalTest(unittest.TestCase):
         self.refuses("--partition-budget", "phantom:gap:8", "--partition-budget", "much", "--out", self.out, status=2)
 
     def test_any_volume_that_cannot_be_read_stops_before_the_first_is_measured(self):
-        self.refuses("no phantom 'cube'", "phantom:cube", "--out", self.out)
+        self.refuses("no phantom 'cube'", "phantom:cube", "--out", self.out, status=2)
         self.refuses("nowhere.nrrd", "phantom:gap:8", "nowhere.nrrd", "--out", self.out)
 
     def test_transfer_function_that_is_none(self):
-        self.refuses("no preset 'bones'", "phantom:gap:8", "--tf", "bones", "--out", self.out)
+        self.refuses("--tf: 'bones' is not one of", "phantom:gap:8", "--tf", "bones", "--out", self.out, status=2)
 
     def test_transfer_function_that_shows_nothing(self):
-        self.refuses("'CT bone' shows nothing", "phantom:shells:8", "--tf", "ct-bone", "--sizes", "8", "--out", self.out)
+        with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
+            json.dump({"name": "Nothing", "points": [{"value": 0, "color": [1, 1, 1], "opacity": 0}]}, file)
+            file.flush()
+            self.refuses("'Nothing' shows nothing", "phantom:shells:8", "--tf", file.name, "--sizes", "8", "--out",
+                         self.out, status=2)
 
     def test_folder_that_cannot_be_made(self):
         with tempfile.NamedTemporaryFile() as file:
