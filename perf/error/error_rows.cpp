@@ -100,7 +100,7 @@ Result<json> ErrorRows::measure(const std::vector<Sampling>& grid) {
         rows.push_back(*store_.row(id));
     }
     if (rows.empty()) {
-        return fail(ErrorCode::InvalidArgument, leftOut_.at(0).at("why"));
+        return fail(ErrorCode::VolumeTooLarge, leftOut_.at(0).at("why"));
     }
     return rows;
 }

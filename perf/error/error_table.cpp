@@ -90,7 +90,7 @@ Result<ErrorChoice> cheapestWithin(double rmse, const SceneLabel& scene,
         expected = expectations(table, scene, false);
     }
     if (expected.empty()) {
-        return fail(ErrorCode::InvalidArgument,
+        return fail(ErrorCode::FileNotFound,
                     std::string("no errors were measured on this device in ") + name(scene.space) +
                         " space: run `slabcast error` on this volume, or leave --target-error out");
     }

@@ -60,7 +60,8 @@ struct ErrorChoice {
 /// its rows are used. Otherwise the rows of all scenes of the same compositing space are, and only
 /// samplings that the greatest number of scenes was measured with: a sampling that only an easy
 /// scene was measured with would promise too much. Pure.
-/// Fails: InvalidArgument (nothing measured; nothing reaches `rmse`, with the best that was).
+/// Fails: FileNotFound (nothing was measured), InvalidArgument (nothing reaches `rmse`; names the
+/// best that was measured).
 /// Tested by: error_table_test.cpp
 Result<ErrorChoice> cheapestWithin(double rmse, const SceneLabel& scene,
                                    std::span<const MeasuredError> table);

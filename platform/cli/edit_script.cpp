@@ -157,11 +157,11 @@ Checked<EditScript> read(const json& document, const Reader& reader) {
 
 Result<EditScript> parseEditScript(std::string_view text, const std::string& sourceName,
                                    const TransferByName& byName, const TransferSubject& subject) {
-    return parseJson(text, sourceName, ErrorCode::InvalidArgument)
+    return parseJson(text, sourceName, ErrorCode::FileUnreadable)
         .and_then([&](const json& document) -> Result<EditScript> {
             Checked<EditScript> script = read(document, {sourceName, byName, subject});
             if (!script) {
-                return fail(ErrorCode::InvalidArgument,
+                return fail(ErrorCode::FileUnreadable,
                             fmt::format("{}: {}", sourceName, said(script.error())));
             }
             return std::move(*script);

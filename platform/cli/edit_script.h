@@ -22,7 +22,7 @@ using TransferByName = std::function<Result<TransferFunction>(const std::string&
 /// - opacity drags the opacity of point "point" to "to";
 /// - jump puts the TF "to" in place at once, then edits nothing;
 /// - random puts one of two bands of values in place every "every" frames (1), by "seed" (1).
-/// Fails: InvalidArgument, as "script.json: steps[2].kind: ...", and as TFs do. Tested by:
+/// Fails: FileUnreadable, as "script.json: steps[2].kind: ...", and as TFs do. Tested by:
 /// edit_test.py
 Result<EditScript> parseEditScript(std::string_view text, const std::string& sourceName,
                                    const TransferByName& byName, const TransferSubject& subject);

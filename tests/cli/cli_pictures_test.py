@@ -85,10 +85,9 @@ class Pictures(CliTest):
         text = self.succeeds("render", "--help")
         given = re.findall(r"^  (--[\w-]+) ([\w-]+(?:\|[\w-]+)+)", text, re.MULTILINE)
         words = [(option, word) for option, words in given for word in words.split("|") if not word.isupper()]
-        structures = re.search(r"--skip NAME +([^;]+);", text)
-        if structures:  # written as a list, for its length
-            names = structures[1].split(":")[-1].replace(",", " ").split()
-            words += [("--skip", name) for name in names]
+        # Written as a list, for its length.
+        structures = re.search(r"--skip NAME .*?one of ([^(]+)\(default", text, re.DOTALL)
+        words += [("--skip", name) for name in structures[1].replace(",", " ").split()]
         self.assertGreater(len({option for option, _ in words}), 12)
         self.assertLessEqual({("--lattice", "shells"), ("--skip", "bitfield-octree"), ("--order", "front-to-back"),
                               ("--classify", "preintegrated"), ("--skip-block", "64")}, set(words))
@@ -197,7 +196,7 @@ class Statistics(CliTest):
         line = re.search(r"(?m)^ratio ([^:]+): fastest of those measured on this device: (.+)$", text)
         chosen, measured = line.groups()
         times = {name: float(ms) for name, ms in re.findall(r"(\d+x\d+ \w+) ([\d.e-]+) ms", measured)}
-        self.assertGreaterEqual(len(times), 3)
+        self.assertGreaterEqual(len(times), 2)  # measuring stops at a ratio that is hopelessly slow
         self.assertEqual(times[chosen], min(times.values()))
 
 

@@ -204,7 +204,7 @@ class RefusalTest(Folder):
                 ({"start": BONE, "steps": [{"kind": "jump", "frames": 1, "to": {"points": []}}]},
                  r"steps\[0\]\.to: points: expected a list")):
             with self.subTest(content=content):
-                self.refuses(cause, "--script", self.script(content), status=2)
+                self.refuses(cause, "--script", self.script(content))
 
     def test_script_that_is_not_there(self):
         self.refuses("nowhere.json: no such script", "--script", self.folder / "nowhere.json")

@@ -1,3 +1,4 @@
+#include "core/gl/state_guard.h"
 #include "core/scene/volume_texture.h"
 #include "core/skip/gpu/gpu_builder.h"
 
@@ -102,6 +103,7 @@ protected:
         scene->geometry.dims = texels.dims;
         scene->texels = std::move(texels);
         scene->codes = encodeCodes(scene->texels);
+        const gl::StateGuard guard; // what uploads bind is their caller's to restore
         scene->texture = uploadTexels(scene->texels, caps()).value();
         scene->voxels = gpuVoxels(scene->texture.id(), scene->texels.format, scene->codes).value();
         return scene;

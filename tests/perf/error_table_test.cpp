@@ -90,8 +90,8 @@ TEST(ErrorTable, WhatCannotBeReachedNamesTheBest) {
 
 TEST(ErrorTable, OtherSpacesTellNothing) {
     const SceneLabel linear{kSkull.volume, kSkull.tf, kSkull.fingerprint, CompositingSpace::Linear};
-    EXPECT_EQ(cheapestWithin(1.0, linear, kTable).error().code, ErrorCode::InvalidArgument);
-    EXPECT_EQ(cheapestWithin(1.0, kSkull, {}).error().code, ErrorCode::InvalidArgument);
+    EXPECT_EQ(cheapestWithin(1.0, linear, kTable).error().code, ErrorCode::FileNotFound);
+    EXPECT_EQ(cheapestWithin(1.0, kSkull, {}).error().code, ErrorCode::FileNotFound);
 }
 
 TEST(ErrorTable, SamplingReplacesWhatItNamesAndNothingElse) {

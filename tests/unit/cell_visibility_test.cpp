@@ -174,7 +174,7 @@ TEST(CellVisibility, OfAlphaIsAnyCornerWithAlpha) {
 
 TEST(CellVisibility, BreachedContractsAbort) {
     SkipScene scene = constantScene({1, 1, 1}, 0, {});
-    EXPECT_DEATH(scene.visibility(), "cellVisibility: expects");
+    EXPECT_DEATH(scene.visibility(), "findVisibility: expects");
     scene.table = bandTable(2, 0, 1);
     EXPECT_DEATH(scene.visibility(-1.0), "filterErrorSampled");
 }

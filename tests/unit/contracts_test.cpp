@@ -197,7 +197,7 @@ const Contract kSkip[] = {
      [] {
          keptLevels({1, 1, 1}, -1);
      }},
-    {"visibleNodes: expects level >= 0", [] { visibleNodes(Octree{}, NodeTest{}, -1); }},
+    {"forVisibleNodes: expects level >= 0", [] { visibleNodes(Octree{}, NodeTest{}, -1); }},
 };
 
 const Contract kReference[] = {
