@@ -20,6 +20,7 @@ import cli_files as files  # noqa: E402
 from cli_case import PHANTOM, QUICK, RATIO, CliTest, main  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent.parent
+SETTINGS = ROOT / "docs" / "settings.md"
 REPORT, DOCUMENTED = ROOT / "perf" / "pages" / "report.py", ROOT / "docs" / "reports.md"
 
 
@@ -81,6 +82,8 @@ class Pictures(CliTest):
               "--separate-minimum": "--skip partitioned", "--traversal": "--skip minmax-octree",
               "--skip-builder": "--skip proximity", "--heatmap-scale": "--heatmap layers"}
 
+    DEALS_LAYERS = ("--layers", "--planes", "--layers-per-plane")  # of which QUICK gives two
+
     def test_every_word_of_every_option_draws(self):
         text = self.succeeds("render", "--help")
         given = re.findall(r"^  (--[\w-]+) ([\w-]+(?:\|[\w-]+)+)", text, re.MULTILINE)
@@ -95,7 +98,8 @@ class Pictures(CliTest):
         def drawn(option, word):
             file = f"{option}{word}.png"
             beside = self.BESIDE.get(f"{option} {word}", self.BESIDE.get(option, ""))
-            run = self.run_cli("render", PHANTOM, "-o", file, *QUICK, *beside.split(), option, word)
+            quick = QUICK[:2] if option in self.DEALS_LAYERS else QUICK
+            run = self.run_cli("render", PHANTOM, "-o", file, *quick, *beside.split(), option, word)
             return run, self.folder / file
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             for (option, word), (run, file) in zip(words, pool.map(lambda pair: drawn(*pair), words)):
@@ -164,6 +168,8 @@ class Statistics(CliTest):
     def test_every_key_is_documented(self):
         known = set(re.findall(r"`([^`]+)`", DOCUMENTED.read_text(encoding="utf-8")))
         stats = self.stats(PHANTOM, *QUICK, "--heatmap", "layers", "--verify")
+        settings = set(re.findall(r"(?m)^\| `([a-z-]+)`", SETTINGS.read_text(encoding="utf-8")))
+        self.assertEqual({key.replace("_", "-") for key in stats.pop("settings")}, settings)
         for part in (stats, *stats.values()):
             self.assertLessEqual(set(part) if isinstance(part, dict) else set(), known)
 

@@ -158,7 +158,10 @@ protected:
     /// What the GPU has built is what an upload of the CPU's makes.
     void expectSame(const Result<SkipTexture>& built, const FreeLengths& expected) {
         ASSERT_TRUE(built.has_value()) << built.error().detail;
-        const SkipTexture uploaded = uploadFreeLengths(expected, caps()).value();
+        const SkipTexture uploaded = [&] {
+            const gl::StateGuard guard;
+            return uploadFreeLengths(expected, caps()).value();
+        }();
         EXPECT_EQ(built->bytes, uploaded.bytes);
         EXPECT_EQ(gpuBytes(expected), uploaded.bytes);
         for (const SkipTexture* texture : {&uploaded, &*built}) {
@@ -172,7 +175,10 @@ protected:
 
     void expectSame(const Result<SkipTexture>& built, const Octree& expected) {
         ASSERT_TRUE(built.has_value()) << built.error().detail;
-        const SkipTexture uploaded = uploadOctree(expected, caps()).value();
+        const SkipTexture uploaded = [&] {
+            const gl::StateGuard guard;
+            return uploadOctree(expected, caps()).value();
+        }();
         EXPECT_EQ(built->bytes, uploaded.bytes);
         EXPECT_EQ(gpuBytes(expected), uploaded.bytes);
         const int levels = int(expected.levels.size());

@@ -141,7 +141,7 @@ def save_difference(path, rows, others):
 
 
 def kept(name):
-    return HERE / "golden" / f"{name}.png"
+    return HERE / f"{name}.png"
 
 
 class GoldenTest(unittest.TestCase):
