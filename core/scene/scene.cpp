@@ -129,6 +129,7 @@ Result<void> Scene::setLook(Look look) {
         look.shading.gradientFloorPerMm = defaultGradientFloorPerMm();
     }
     state_->look = std::move(look);
+    state_->live.reset(); // of a copy of an edited scene: its structures are under that one's TF
     state_->lookGeneration = nextGeneration();
     state_->provided.reset();
     state_->table = {};
