@@ -105,11 +105,12 @@ Result<std::vector<Row>> buildRows(const Workshop& workshop, const CellVisibilit
         }
     }
     for (int round = -1; round < rounds; ++round) {
-        for (auto& [options, cpu, gpu] : all) {
+        for (Sides& side : all) {
             const Result<void> built =
-                cpu.again([&] { return workshop.build(options, visibility); }, round >= 0)
+                side.cpu.again([&] { return workshop.build(side.options, visibility); }, round >= 0)
                     .and_then([&] {
-                        return gpu.again([&] { return workshop.buildOnGpu(options); }, round >= 0);
+                        return side.gpu.again([&] { return workshop.buildOnGpu(side.options); },
+                                              round >= 0);
                     });
             if (!built) {
                 return tl::unexpected(built.error());
