@@ -178,7 +178,7 @@ TEST_F(HostCostTest, AnEditReusesWhatIsThere) {
             EXPECT_EQ(prepare.makes, 0) << listed;
             EXPECT_EQ(prepare.uploads, 1) << listed; // the table, into one that is there
             EXPECT_EQ(prepare.queries, hostState == HostState::Ours ? 0 : 94) << listed;
-            EXPECT_LE(prepare.calls, hostState == HostState::Ours ? 10 : 198) << listed;
+            EXPECT_EQ(prepare.calls, hostState == HostState::Ours ? 9 : 9 + 188) << listed;
             EXPECT_EQ(draw.allocations, 0) << frame << ": " << draw.bytes << " bytes";
             EXPECT_EQ(edit.threads + prepare.threads + draw.threads, 0);
         }
