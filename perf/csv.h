@@ -23,12 +23,12 @@ inline constexpr CsvColumn kMeasuredColumns[] = {{"frame_ms_median", "/frameMs/m
                                                  {"frame_ms_p90", "/frameMs/p90"},
                                                  {"frame_ms_n", "/frameMs/n"},
                                                  {"fragments", "/counters/fragments"},
-                                                 {"layers_evaluated", "/counters/layers_evaluated"},
-                                                 {"layers_skipped", "/counters/layers_skipped"},
-                                                 {"volume_fetches", "/counters/volume_fetches"},
-                                                 {"skip_fetches", "/counters/skip_fetches"},
+                                                 {"layers_evaluated", "/counters/layersEvaluated"},
+                                                 {"layers_skipped", "/counters/layersSkipped"},
+                                                 {"volume_fetches", "/counters/volumeFetches"},
+                                                 {"skip_fetches", "/counters/skipFetches"},
                                                  {"stretches", "/counters/stretches"},
-                                                 {"blocks_visited", "/counters/blocks_visited"}};
+                                                 {"blocks_visited", "/counters/blocksVisited"}};
 
 /// One table's columns from those of its parts.
 std::vector<CsvColumn> columnsOf(std::initializer_list<std::span<const CsvColumn>> parts);

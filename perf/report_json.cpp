@@ -1,5 +1,6 @@
 #include "perf/report_json.h"
 
+#include <cctype>
 #include <ctime>
 
 #include <nlohmann/json.hpp>
@@ -9,6 +10,21 @@
 namespace slabcast {
 
 using nlohmann::json;
+
+std::string keyOf(std::string_view words) {
+    std::string key;
+    bool begins = false; // a word, other than the first
+    for (const char letter : words) {
+        if (letter == ' ' || letter == '-') {
+            begins = true;
+        } else {
+            const int upper = std::toupper(static_cast<unsigned char>(letter));
+            key += begins ? static_cast<char>(upper) : letter;
+            begins = false;
+        }
+    }
+    return key;
+}
 
 json toJson(const gl::Caps& caps) {
     return {{"vendor", caps.vendor},
@@ -58,7 +74,7 @@ json toJson(const BuiltSkip& skip) {
         return nullptr;
     }
     const SkipOptions& o = skip.options;
-    json parameters = {{"block_edge", o.blockEdgeVoxels}};
+    json parameters = {{"blockEdge", o.blockEdgeVoxels}};
     const bool isBitfield = o.structure == SkipStructure::BitfieldOctree;
     const bool isPartitioned = o.structure == SkipStructure::Partitioned;
     if (isBitfield) {
@@ -68,20 +84,20 @@ json toJson(const BuiltSkip& skip) {
         parameters["partitions"] = o.partitions;
     }
     if (isBitfield || isPartitioned) {
-        parameters["separate_minimum"] = o.separateMinimum;
-        parameters["value_range"] = o.valueRange ? json(*o.valueRange) : json();
+        parameters["separateMinimum"] = o.separateMinimum;
+        parameters["valueRange"] = o.valueRange ? json(*o.valueRange) : json();
     }
     if (isOctree(o.structure)) {
-        parameters["initial_level"] = o.initialLevel;
+        parameters["initialLevel"] = o.initialLevel;
         parameters["traversal"] = name(o.traversal);
     }
     return {{"structure", name(o.structure)},
             {"parameters", std::move(parameters)},
             {"builder", skip.onGpu ? "gpu" : "cpu"},
-            {"build_ms", skip.buildMs},
-            {"gpu_bytes", gpuBytes(skip)},
-            {"host_bytes", hostBytes(skip)},
-            {"occupied_fraction", skip.occupiedFraction}};
+            {"buildMs", skip.buildMs},
+            {"gpuBytes", gpuBytes(skip)},
+            {"hostBytes", hostBytes(skip)},
+            {"occupiedFraction", skip.occupiedFraction}};
 }
 
 json toJson(const FrameTimes& t) {
@@ -96,13 +112,11 @@ json toJson(const Result<WorkCounters>& counters) {
     if (!counters) {
         return nullptr;
     }
-    return {{"fragments", counters->fragments},
-            {"layers_evaluated", counters->layersEvaluated},
-            {"layers_skipped", counters->layersSkipped},
-            {"volume_fetches", counters->volumeFetches},
-            {"skip_fetches", counters->skipFetches},
-            {"stretches", counters->stretches},
-            {"blocks_visited", counters->blocksVisited}};
+    return {
+        {"fragments", counters->fragments},         {"layersEvaluated", counters->layersEvaluated},
+        {"layersSkipped", counters->layersSkipped}, {"volumeFetches", counters->volumeFetches},
+        {"skipFetches", counters->skipFetches},     {"stretches", counters->stretches},
+        {"blocksVisited", counters->blocksVisited}};
 }
 
 json reportHeader(const RunInfo& run, const gl::Caps& caps) {

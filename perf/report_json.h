@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -13,6 +14,10 @@
 namespace slabcast {
 
 class Stage;
+
+/// The key of what words name, lowerCamel as all keys are: of "early exit" or "early-exit"
+/// earlyExit. Tested by: settings_json_test.cpp
+std::string keyOf(std::string_view words);
 
 // JSON fragments that reports share. Keys are stable: people plot them.
 nlohmann::json toJson(const gl::Caps& caps);

@@ -1,8 +1,8 @@
 #include "perf/settings_json.h"
 
-#include <algorithm>
-
 #include <nlohmann/json.hpp>
+
+#include "perf/report_json.h"
 
 namespace slabcast {
 
@@ -26,9 +26,7 @@ json toJson(const Setting& setting, const SettingValue& value) {
 json toJson(const Settings& settings) {
     json all = json::object();
     for (const Setting& setting : settingsTable()) {
-        std::string key = setting.name;
-        std::replace(key.begin(), key.end(), '-', '_');
-        all[key] = toJson(setting, setting.read(settings));
+        all[keyOf(setting.name)] = toJson(setting, setting.read(settings));
     }
     return all;
 }

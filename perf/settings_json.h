@@ -10,7 +10,7 @@ namespace slabcast {
 /// word; null where it has none.
 nlohmann::json toJson(const Setting& setting, const SettingValue& value);
 
-/// All settings of the table, by name with _ for -. Tested by: settings_json_test.cpp
+/// All settings of the table, each by keyOf() its name. Tested by: settings_json_test.cpp
 nlohmann::json toJson(const Settings& settings);
 
 } // namespace slabcast

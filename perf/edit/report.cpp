@@ -31,12 +31,12 @@ constexpr CsvColumn kColumns[] = {{"frame", "/frame"},
                                   {"naive_ms", "/naiveMs"},
                                   {"equal", "/equal"},
                                   {"fragments", "/counters/fragments"},
-                                  {"layers_evaluated", "/counters/layers_evaluated"},
-                                  {"layers_skipped", "/counters/layers_skipped"},
-                                  {"volume_fetches", "/counters/volume_fetches"},
-                                  {"skip_fetches", "/counters/skip_fetches"},
+                                  {"layers_evaluated", "/counters/layersEvaluated"},
+                                  {"layers_skipped", "/counters/layersSkipped"},
+                                  {"volume_fetches", "/counters/volumeFetches"},
+                                  {"skip_fetches", "/counters/skipFetches"},
                                   {"stretches", "/counters/stretches"},
-                                  {"blocks_visited", "/counters/blocks_visited"}};
+                                  {"blocks_visited", "/counters/blocksVisited"}};
 
 json conditionsOf(const Stage& stage, const EditDesc& desc, const FramePlan& plan) {
     const StageDesc& picture = stage.desc();
@@ -96,32 +96,32 @@ json rowOf(const EditRow& row, std::size_t index) {
 }
 
 json summaryJson(const EditSummary& s, const EditDesc& desc, double worstOfReplays) {
-    json summary = {{"compared_with", name(desc.live.always.structure)},
-                    {"worst_over_octree_frame", s.overOctree.max},
-                    {"over_octree_frame", toJson(s.overOctree)},
-                    {"worst_added_over_octree_frame", s.worstAdded},
-                    {"worst_octree_frame_over_median", s.worstOctreeSpread},
-                    {"worst_of_single_replays", worstOfReplays},
-                    {"frames_over_1.5_octree_frames", s.framesOverOctreeBudget},
+    json summary = {{"comparedWith", name(desc.live.always.structure)},
+                    {"worstOverOctreeFrame", s.overOctree.max},
+                    {"overOctreeFrame", toJson(s.overOctree)},
+                    {"worstAddedOverOctreeFrame", s.worstAdded},
+                    {"worstOctreeFrameOverMedian", s.worstOctreeSpread},
+                    {"worstOfSingleReplays", worstOfReplays},
+                    {"framesOverOctreeBudget", s.framesOverOctreeBudget},
                     {"frames", s.frames},
                     {"edits", s.edits},
-                    {"budget_ms", s.budgetMs},
-                    {"budget_given", desc.budgetMs.has_value()},
-                    {"frames_over_budget", s.framesOverBudget},
-                    {"frame_ms", toJson(s.frameMs)},
-                    {"edit_frame_ms", toJson(s.editFrameMs)},
-                    {"edit_ms", toJson(s.editMs)},
-                    {"octree_frame_ms", toJson(s.octreeMs)},
+                    {"budgetMs", s.budgetMs},
+                    {"budgetGiven", desc.budgetMs.has_value()},
+                    {"framesOverBudget", s.framesOverBudget},
+                    {"frameMs", toJson(s.frameMs)},
+                    {"editFrameMs", toJson(s.editFrameMs)},
+                    {"editMs", toJson(s.editMs)},
+                    {"octreeFrameMs", toJson(s.octreeMs)},
                     {"naive",
-                     {{"frame_ms", toJson(s.naiveMs)},
-                      {"edit_frame_ms", toJson(s.naiveEditFrameMs)},
-                      {"worst_over_octree_frame", s.worstNaive},
-                      {"frames_over_budget", s.naiveFramesOverBudget}}},
-                    {"frames_by_structure", s.framesByStructure},
-                    {"hand_overs", s.handOvers}};
+                     {{"frameMs", toJson(s.naiveMs)},
+                      {"editFrameMs", toJson(s.naiveEditFrameMs)},
+                      {"worstOverOctreeFrame", s.worstNaive},
+                      {"framesOverBudget", s.naiveFramesOverBudget}}},
+                    {"framesByStructure", s.framesByStructure},
+                    {"handOvers", s.handOvers}};
     if (desc.verify) {
-        summary["frames_equal"] = s.framesEqual;
-        summary["frames_to_correct"] = s.framesToCorrect ? json(*s.framesToCorrect) : json();
+        summary["framesEqual"] = s.framesEqual;
+        summary["framesToCorrect"] = s.framesToCorrect ? json(*s.framesToCorrect) : json();
     }
     return summary;
 }

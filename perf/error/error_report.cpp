@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/stopwatch.h"
+#include "core/plan/settings_table.h"
 #include "perf/csv.h"
 #include "perf/error/error_rows.h"
 #include "perf/error/error_store.h"
@@ -47,11 +48,6 @@ constexpr CsvColumn kColumns[] = {{"id", "/id"},
                                   {"order_gpu", "/order/gpu"}};
 constexpr CsvColumn kLastColumns[] = {{"date", "/date"}, {"command", "/command"}};
 
-const char* nameOf(SegmentForm form) {
-    constexpr const char* kNames[] = {"auto", "unrolled", "loop"};
-    return kNames[static_cast<std::size_t>(form)];
-}
-
 /// All that the continuous picture depends on.
 json referenceKey(const Stage& stage, const RunInfo& run) {
     const Scene& scene = stage.scene();
@@ -59,10 +55,10 @@ json referenceKey(const Stage& stage, const RunInfo& run) {
     return {{"commit", run.commit},
             {"voxels", fingerprint(stage.values().data)},
             {"placement", placementKey(scene.geometry())},
-            {"transfer function", transferKey(scene.look().tf)},
+            {"transferFunction", transferKey(scene.look().tf)},
             {"space", name(scene.provided()->space)},
             {"camera", toJson(o.camera)},
-            {"field of view", o.fovDegrees},
+            {"fovDegrees", o.fovDegrees},
             {"size", {o.size.x, o.size.y}},
             {"tolerance", kReferenceTolerance}};
 }
@@ -74,9 +70,9 @@ json rowsKey(const Stage& stage, const ErrorDesc& desc, json key) {
     key.update({{"device", toJson(stage.caps())},
                 {"texels", name(stage.scene().texels().format)},
                 {"lattice", name(s.lattice)},
-                {"form", nameOf(s.form)},
-                {"skip", s.skip ? name(*s.skip) : "auto"},
-                {"skip block", o.settings.skipOptions.blockEdgeVoxels},
+                {"form", get(s, "form")},
+                {"skip", get(s, "skip")},
+                {"skipBlock", o.settings.skipOptions.blockEdgeVoxels},
                 {"tighten", s.tighten},
                 {"quick", desc.quick},
                 {"frames", desc.frames}});
@@ -92,8 +88,8 @@ json conditions(const Stage& stage, const ErrorDesc& desc) {
             {"transferFunction", stage.scene().look().tf.name},
             {"space", name(s.space)},
             {"lattice", name(s.lattice)},
-            {"form", nameOf(s.form)},
-            {"skip", s.skip ? name(*s.skip) : "auto"},
+            {"form", get(s, "form")},
+            {"skip", get(s, "skip")},
             {"tighten", s.tighten},
             {"texelFormat", name(stage.scene().texels().format)},
             {"quantisationError", stage.scene().texels().maxQuantisationError},
@@ -125,8 +121,8 @@ std::optional<double> timeOf(const json& row) {
 std::optional<double> fetchesOf(const json& row) {
     const json& counters = row.at("counters");
     return counters.is_null() ? std::nullopt
-                              : std::optional(counters.at("volume_fetches").get<double>() +
-                                              counters.at("skip_fetches").get<double>());
+                              : std::optional(counters.at("volumeFetches").get<double>() +
+                                              counters.at("skipFetches").get<double>());
 }
 
 /// What an error table keeps of the rows.

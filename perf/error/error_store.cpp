@@ -50,7 +50,7 @@ bool areCountersOrNull(const json& value) {
         return value.contains(key) && value.at(key).is_number();
     };
     return value.is_null() ||
-           (value.is_object() && counts("volume_fetches") && counts("skip_fetches"));
+           (value.is_object() && counts("volumeFetches") && counts("skipFetches"));
 }
 
 constexpr Member kMembers[] = {{"/id", isText},

@@ -48,12 +48,12 @@ class Edit:
 
     @property
     def budget(self):
-        return number(self.section("summary").get("budget_ms"))
+        return number(self.section("summary").get("budgetMs"))
 
     @property
     def compared(self):
         """What each frame is compared with: the structure that is right under any transfer function."""
-        structure = self.section("summary").get("compared_with")
+        structure = self.section("summary").get("comparedWith")
         return "structure" if structure is None else KINDS.get(structure, str(structure))
 
     @property

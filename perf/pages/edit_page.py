@@ -45,16 +45,16 @@ def what_served(edit):
 
 def head(edit):
     summary, volume, device = edit.section("summary"), edit.section("volume"), edit.section("device")
-    worst, naive = of_summary(edit, "worst_over_octree_frame"), of_summary(edit, "naive", "worst_over_octree_frame")
+    worst, naive = of_summary(edit, "worstOverOctreeFrame"), of_summary(edit, "naive", "worstOverOctreeFrame")
     found = [card("Worst frame", times(worst), f"of a frame by {the(edit)} at rest; rebuilding all at once: "
                   f"{times(naive)}",
                   "skips" if worst is not None and worst <= GOAL else "")]
-    added, spread = of_summary(edit, "worst_added_over_octree_frame"), of_summary(edit, "worst_octree_frame_over_median")
+    added, spread = of_summary(edit, "worstAddedOverOctreeFrame"), of_summary(edit, "worstOctreeFrameOverMedian")
     if added is not None:
         found.append(card("Added at worst", f"{figures(100 * (added - 1))} %", "of such a frame, by edit, rebuilding and "
                           f"uploads; those by themselves vary up to {times(spread)} their median",
                           "skips" if added <= GOAL else ""))
-    equal, to_correct = number(summary.get("frames_equal")), number(summary.get("frames_to_correct"))
+    equal, to_correct = number(summary.get("framesEqual")), number(summary.get("framesToCorrect"))
     if equal is not None:
         found.append(card("From an edit to its picture",
                           MISSING if to_correct is None else plural(int(to_correct), "frame"),
@@ -62,10 +62,10 @@ def head(edit):
                           "skips" if equal == len(edit.frames) else ""))
     else:
         found.append(card("From an edit to its picture", MISSING, "not compared: --verify does"))
-    over = number(summary.get("frames_over_budget"))
+    over = number(summary.get("framesOverBudget"))
     found.append(card("Frames over the budget", figures(over),
                       f"of {len(edit.frames)}; {figures(edit.budget)} ms; rebuilding all at once: "
-                      f"{figures(of_summary(edit, 'naive', 'frames_over_budget'))}", "skips" if over == 0 else ""))
+                      f"{figures(of_summary(edit, 'naive', 'framesOverBudget'))}", "skips" if over == 0 else ""))
     line = ", ".join(filter(None, (esc(volume.get("name", "volume")), by(volume.get("dims", [])),
                                    plural(len(edit.edits), "edit"), esc(device.get("renderer", "unknown device")))))
     words = f"<p>{esc(what_served(edit))}</p>"
@@ -85,7 +85,7 @@ def work(edit):
 def budget_words(edit):
     if not edit.budget:
         return ""
-    given = edit.section("summary").get("budget_given") is True
+    given = edit.section("summary").get("budgetGiven") is True
     why = "as asked for" if given else f"{GOAL} times the median frame by {the(edit)}"
     return f" The dashed line is the budget: {figures(edit.budget)} ms, {why}."
 
@@ -95,13 +95,13 @@ def compared(edit):
     summary = edit.section("summary")
     rows = []
     for name, of_all, of_edits, worst, over in (
-            ("live policy", part(summary, "frame_ms"), part(summary, "edit_frame_ms"),
-             of_summary(edit, "worst_over_octree_frame"), of_summary(edit, "frames_over_budget")),
-            ("naive: all rebuilt at every edit", part(part(summary, "naive"), "frame_ms"),
-             part(part(summary, "naive"), "edit_frame_ms"), of_summary(edit, "naive", "worst_over_octree_frame"),
-             of_summary(edit, "naive", "frames_over_budget")),
-            (f"{the(edit)}, made beforehand: nothing edited", part(summary, "octree_frame_ms"), {},
-             of_summary(edit, "worst_octree_frame_over_median"), None)):
+            ("live policy", part(summary, "frameMs"), part(summary, "editFrameMs"),
+             of_summary(edit, "worstOverOctreeFrame"), of_summary(edit, "framesOverBudget")),
+            ("naive: all rebuilt at every edit", part(part(summary, "naive"), "frameMs"),
+             part(part(summary, "naive"), "editFrameMs"), of_summary(edit, "naive", "worstOverOctreeFrame"),
+             of_summary(edit, "naive", "framesOverBudget")),
+            (f"{the(edit)}, made beforehand: nothing edited", part(summary, "octreeFrameMs"), {},
+             of_summary(edit, "worstOctreeFrameOverMedian"), None)):
         rows.append([name, *(figures(of_all.get(key)) for key in ("median", "p90", "max")),
                      figures(of_edits.get("median")), figures(of_edits.get("max")), times(worst), figures(over)])
     return table(["ms per frame", "median", "90 %", "worst", "with an edit: median", "with an edit: worst",
@@ -137,7 +137,7 @@ def builds(edit):
 def run_facts(edit):
     conditions = edit.section("conditions")
     replays = number(conditions.get("replays"))
-    single = of_summary(edit, "worst_of_single_replays")
+    single = of_summary(edit, "worstOfSingleReplays")
     return facts([
         *device_facts(edit.raw),
         ("Picture", by(conditions.get("size", []))),

@@ -6,7 +6,7 @@ from edit_data import PARTS
 from page_svg import INK, MUTED, NARROW, WIDE, key, plain_log_ticks, plt, svg
 
 LIVE, NAIVE, COMPARED, BUDGET = INK, "#c8643a", "#8fb0cc", "#b02a1e"
-FETCHES = {"volume_fetches": ("of voxels", INK), "skip_fetches": ("of the skip structure", "#1d5a91")}
+FETCHES = {"volumeFetches": ("of voxels", INK), "skipFetches": ("of the skip structure", "#1d5a91")}
 STRUCTURES = {"bitfield-octree": "#1d5a91", "minmax-octree": "#1d5a91", "partitioned": "#1d5a91",
               "proximity": "#7fb58a", "chebyshev": "#7fb58a", "blocks": "#7fb58a", "none": "#d9d4c7",
               "nothing drawn": "#f0eee7"}

@@ -47,7 +47,7 @@ class Row:
     def fetches(self):
         """Of the volume and of the skip structure; None where nothing was counted."""
         counters = page_input.section(self.raw, "counters")
-        volume, skip = number(counters.get("volume_fetches")), number(counters.get("skip_fetches"))
+        volume, skip = number(counters.get("volumeFetches")), number(counters.get("skipFetches"))
         return None if volume is None else volume + (skip or 0)
 
     @property

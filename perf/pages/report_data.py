@@ -10,10 +10,10 @@ from page_input import BadInput, number
 SERIES_KEYS = ("skip", "form", "tighten", "lattice", "classification", "termination")
 COUNTERS = {
     "fragments": "fragments",
-    "layers_evaluated": "layers evaluated",
-    "layers_skipped": "layers skipped",
-    "volume_fetches": "volume fetches",
-    "skip_fetches": "skip fetches",
+    "layersEvaluated": "layers evaluated",
+    "layersSkipped": "layers skipped",
+    "volumeFetches": "volume fetches",
+    "skipFetches": "skip fetches",
 }
 # Tukora 2020, section 3 and Fig. 4: frames per second (without skipping, with skipping) on the paper's phone.
 PAPER_FIGURES = {"ray casting": (4.7, 8.5), "hybrid": (None, 36.0), "slicing": (13.9, 13.9)}

@@ -14,7 +14,8 @@ STRUCTURES = tuple(NAMES)
 # Which of a paper's columns a structure of ours stands beside.
 PUBLISHED = {"proximity": "distance map", "chebyshev": "distance map", "boolean-octree": "boolean-octree",
              "minmax-octree": "minmax-octree", "bitfield-octree": "bitfield-octree"}
-MODES = ("marching only", "early exit", "shading")
+# What frames do, and its key in a paper's table.
+MODES = {"marching only": "marchingOnly", "early exit": "earlyExit", "shading": "shading"}
 AGAIN = "run `slabcast skipbench` again"
 
 
@@ -101,8 +102,8 @@ class Bench:
         columns, column = faludi.get("structures", []), PUBLISHED.get(structure)
         if column not in columns:
             return []
-        place = columns.index(column)
-        return [data[mode][0] / data[mode][place] for data in faludi.get("datasets", []) if data.get(mode)]
+        place, key = columns.index(column), MODES[mode]
+        return [data[key][0] / data[key][place] for data in faludi.get("datasets", []) if data.get(key)]
 
     def published_merges(self, transfer, partitions):
         """Rebuilding over merging, dataset by dataset."""

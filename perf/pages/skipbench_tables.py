@@ -6,7 +6,7 @@ from skipbench_data import MODES, NAMES, STRUCTURES, span
 
 HEAT = (245, 248, 250), (29, 90, 145)  # of the slowest and the fastest cell
 SLOW = 1.6  # times the fastest: no colour beyond
-COUNTERS = ("layers_evaluated", "volume_fetches", "skip_fetches", "stretches", "blocks_visited")
+COUNTERS = ("layersEvaluated", "volumeFetches", "skipFetches", "stretches", "blocksVisited")
 
 
 def cubed(text):
@@ -122,8 +122,8 @@ def families(bench, volume):
                           f"{esc(row.get('planes'))}×{esc(row.get('layersPerPlane'))}",
                           "rectangles" if row.get("tighten") else "sphere", esc(row.get("order", MISSING)),
                           figures(row.ms), span(row.spread, figures), times(row.speedup),
-                          millions(row.at("counters", "layers_evaluated")),
-                          millions(row.at("counters", "skip_fetches"))])
+                          millions(row.at("counters", "layersEvaluated")),
+                          millions(row.at("counters", "skipFetches"))])
     head = ["structure", "family", "mode", "planes × layers", "planes are", "blended", "ms", "min – max",
             "times as fast", "layers, M", "skip fetches, M"]
     return lines and folded(f"{len(lines)} rows, each at its best ratio", table(head, lines, css="rows bench"))

@@ -1,10 +1,10 @@
 #include "perf/skip/figures.h"
 
-#include <algorithm>
 #include <functional>
 
 #include "perf/frame_times.h"
 #include "perf/number.h"
+#include "perf/report_json.h"
 #include "perf/skip/paired_ratio.h"
 #include "perf/skip/row.h"
 
@@ -65,12 +65,6 @@ Value pairedTimes(const Row* a, const Row* b) {
     return both ? Value(pairedRatio(a->raced->samples, b->raced->samples)) : std::nullopt;
 }
 
-/// As keys have it: "early exit" is early_exit.
-std::string keyOf(std::string words) {
-    std::replace(words.begin(), words.end(), ' ', '_');
-    return words;
-}
-
 /// Skull CT under bone is what most goals were set for.
 bool isBone(const VolumeRecord& volume) {
     return volume.info.modality == Modality::Ct && volume.transferFunction == "CT bone";
@@ -113,7 +107,7 @@ void addRayCasting(const Judged& judged) {
     const bool bone = isBone(judged.volume);
     for (const auto& [mode, goal] : {std::pair{kMarchingOnly, 2.0}, {kEarlyExit, 3.0}}) {
         const Row* map = distanceMap(judged, mode);
-        judged.add({.key = "distance_map_" + keyOf(mode.name) + "_speedup",
+        judged.add({.key = keyOf(std::string("distance map ") + mode.name + " speedup"),
                     .name = std::string("distance map against none, ") + mode.name,
                     .value = speedupOf(map),
                     .goal = goalIf(bone, goal),
@@ -122,13 +116,13 @@ void addRayCasting(const Judged& judged) {
     }
     const Value bitfield = timeOverDistanceMap(judged, SkipStructure::BitfieldOctree);
     const Value minMax = timeOverDistanceMap(judged, SkipStructure::MinMaxOctree);
-    judged.add({.key = "bitfield_octree_over_distance_map_time",
+    judged.add({.key = "bitfieldOctreeOverDistanceMapTime",
                 .name = "bitfield octree against the distance map, marching only",
                 .value = bitfield,
                 .goal = goalIf(bone, 1.7),
                 .sense = Sense::AtMost,
                 .from = "its time over the map's"});
-    judged.add({.key = "bitfield_octree_over_minmax_octree_time",
+    judged.add({.key = "bitfieldOctreeOverMinmaxOctreeTime",
                 .name = "bitfield octree against the min-max octree, marching only",
                 .value = quotient(bitfield, minMax),
                 .goal = goalIf(bone, 1.0),
@@ -155,7 +149,7 @@ void addBlocks(const Judged& judged) {
                  {"blocks looked at", &WorkCounters::stretches, "those, and nodes leapt over",
                   std::nullopt}};
     for (const auto& kind : kinds) {
-        judged.add({.key = "bitfield_octree_over_minmax_octree_" + keyOf(kind.name),
+        judged.add({.key = keyOf(std::string("bitfield octree over minmax octree ") + kind.name),
                     .name = std::string("bitfield octree against the min-max octree, ") + kind.name,
                     .value = quotient(work(SkipStructure::BitfieldOctree, kind.counter),
                                       work(SkipStructure::MinMaxOctree, kind.counter)),
@@ -197,12 +191,13 @@ void addHybrid(const Judged& judged) {
                                        : std::string(name(best->options.structure)) + ", " +
                                              std::to_string(best->plan->layersPerPlane) +
                                              " layers a plane";
-            judged.add({.key = "hybrid_" + keyOf(mode.name) + "_" + kind.key + "_speedup",
-                        .name = std::string("hybrid against its own best without, ") + mode.name +
-                                ", " + kind.name,
-                        .value = pairedTimes(none, best),
-                        .goal = kind.goal,
-                        .from = "times as fast, each at its best ratio; " + by});
+            judged.add(
+                {.key = keyOf(std::string("hybrid ") + mode.name + " " + kind.key + " speedup"),
+                 .name = std::string("hybrid against its own best without, ") + mode.name + ", " +
+                         kind.name,
+                 .value = pairedTimes(none, best),
+                 .goal = kind.goal,
+                 .from = "times as fast, each at its best ratio; " + by});
         }
     }
 }
@@ -222,7 +217,7 @@ void addMerging(const Judged& judged) {
                       " transfer functions (" + number(all.min) + " to " + number(all.max) + ")"
                 : "not measured: over the memory budget";
         judged.add(
-            {.key = "merge_16_speedup_edge_" + std::to_string(edge),
+            {.key = "merge16SpeedupEdge" + std::to_string(edge),
              .name = "merging 16 partitions against rebuilding, blocks of " + std::to_string(edge),
              .value = any ? Value(all.median) : std::nullopt,
              .goal = goalIf(edge == 4, 10.0),
@@ -241,7 +236,7 @@ void addBuilds(const Judged& judged) {
                r.options.structure == SkipStructure::BitfieldOctree;
     }); // none where it is not among the sizes
     const bool built = row != nullptr && row->build && row->build->refused.empty();
-    judged.add({.key = "bitfield_octree_256_build_ms",
+    judged.add({.key = "bitfieldOctree256BuildMs",
                 .name = "bitfield octree of 256^3, build",
                 .value = built ? Value(summarise(row->build->ms).median) : std::nullopt,
                 .goal = 60.0,
@@ -250,7 +245,7 @@ void addBuilds(const Judged& judged) {
                         number(row != nullptr ? row->cube->codesMs : 0.0) +
                         " ms; leaves of 4 voxels, 32 bits"});
     judged.add(
-        {.key = "bitfield_octree_256_memory_share",
+        {.key = "bitfieldOctree256MemoryShare",
          .name = "bitfield octree of 256^3, memory",
          .value = built ? Value(static_cast<double>(row->build->memory.gpuBytes) / (2.0 * kVoxels))
                         : std::nullopt,

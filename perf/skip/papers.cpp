@@ -98,8 +98,8 @@ json faludi() {
     for (const FaludiDataset& d : kFaludi) {
         datasets.push_back({{"name", d.name},
                             {"dims", d.dims},
-                            {"marching only", d.marching},
-                            {"early exit", d.earlyExit},
+                            {"marchingOnly", d.marching},
+                            {"earlyExit", d.earlyExit},
                             {"shading", d.shading},
                             {"generation", d.generation}});
     }

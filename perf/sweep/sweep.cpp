@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/plan/settings_table.h"
 #include "perf/csv.h"
 #include "perf/number.h"
 
@@ -107,7 +108,7 @@ json conditions(const Stage& stage, int frames) {
             {"classification", name(s.classification)},
             {"space", name(s.space)},
             {"target", name(s.target)},
-            {"shade", s.shaded ? "phong" : "off"},
+            {"shade", get(s, "shade")},
             {"termination", s.termination ? fixed(*s.termination, 4) : "off"},
             {"lattice", name(s.lattice)},
             {"layerSpacingMm", s.totalLayers ? 2.0 * facts.sphere.radiusMm / total

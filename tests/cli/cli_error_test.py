@@ -19,6 +19,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
 import cli_files as files  # noqa: E402
 from cli_case import POINT, CliTest, main  # noqa: E402
+from report_keys import odd_keys  # noqa: E402
 
 
 class Accuracy(CliTest):
@@ -64,13 +65,19 @@ class Accuracy(CliTest):
             self.assertEqual(row["ratio"], {1: "slicing", 0: "ray casting"}[row["layers"]])
             self.assertEqual(row["frameMs"]["n"], 3)
             self.assertTrue(self.report["started"] <= row["date"] <= self.report["date"])
-            self.assertGreater(row["counters"]["volume_fetches"], 0)
+            self.assertGreater(row["counters"]["volumeFetches"], 0)
             for picture in ("thumbnail", "difference"):
                 files.Png((self.measured / "err" / row["pictures"][picture]).read_bytes())
         with open(self.measured / "err" / "error.csv", newline="", encoding="utf-8") as file:
             table = list(csv.DictReader(file))
         self.assertEqual([(line["id"], float(line["rmse"]), line["command"]) for line in table],
                          [(row["id"], row["error"]["total"]["rmse"], row["command"]) for row in self.rows()])
+
+    def test_keys_are_lower_camel_in_all_that_is_kept(self):
+        kept = [json.loads(line) for line in (self.measured / "err" / "rows.jsonl").read_text().splitlines()]
+        reference = (self.measured / "err" / "reference.f64").read_bytes().partition(b"\n")[0]
+        for content in (self.report, kept, json.loads(reference), json.loads(self.table().read_text())):
+            self.assertEqual(odd_keys(content), [])
 
     def test_parts_add_up_as_distances_do(self):
         """Total is the distance between the ends of a path of three: no longer than it, no shorter than its detours."""
@@ -96,7 +103,7 @@ class Accuracy(CliTest):
 
     def test_fronts_hold_what_nothing_beats(self):
         costs = {"front": lambda row: row["frameMs"]["median"],
-                 "frontByFetches": lambda row: row["counters"]["volume_fetches"] + row["counters"]["skip_fetches"]}
+                 "frontByFetches": lambda row: row["counters"]["volumeFetches"] + row["counters"]["skipFetches"]}
         for name, cost in costs.items():
             places = [(cost(row), row["error"]["total"]["rmse"]) for row in self.rows()]
 

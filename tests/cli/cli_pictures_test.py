@@ -18,6 +18,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
 import cli_files as files  # noqa: E402
 from cli_case import PHANTOM, QUICK, RATIO, CliTest, main  # noqa: E402
+from report_keys import key_of, odd_keys  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 SETTINGS = ROOT / "docs" / "settings.md"
@@ -70,7 +71,7 @@ class Pictures(CliTest):
 
     def test_the_first_of_many_frames_is_written(self):
         one = self.picture(PHANTOM, *QUICK)
-        self.assertEqual(self.stats(PHANTOM, *QUICK, "--frames", "3")["frame_ms"]["n"], 3)
+        self.assertEqual(self.stats(PHANTOM, *QUICK, "--frames", "3")["frameMs"]["n"], 3)
         self.assertEqual((self.folder / "p.png").read_bytes(), one)
 
     def test_turning_the_camera_changes_the_picture(self):
@@ -148,9 +149,9 @@ class Statistics(CliTest):
     KEYS = {
         "device": {"renderer", "vendor", "version", "software"},
         "plan": {"planes", "layers", "layersPerPlane", "termination", "order", "planesPerMark", "variant", "reasons"},
-        "frame_ms": {"median", "min", "max", "n"},
-        "counters": {"fragments", "layers_evaluated", "layers_skipped", "volume_fetches", "skip_fetches", "stretches",
-                     "blocks_visited"},
+        "frameMs": {"median", "min", "max", "n"},
+        "counters": {"fragments", "layersEvaluated", "layersSkipped", "volumeFetches", "skipFetches", "stretches",
+                     "blocksVisited"},
         "volume": {"name", "dims", "type", "spacingMm", "bytes"},
     }
 
@@ -162,14 +163,14 @@ class Statistics(CliTest):
         self.assertEqual((plan["planes"], plan["layersPerPlane"], plan["layers"]), (4, 4, 16))
         self.assertEqual(stats["volume"]["dims"], [24, 24, 24])
         self.assertEqual(stats["volume"]["bytes"], 24 ** 3)
-        times = stats["frame_ms"]
+        times = stats["frameMs"]
         self.assertTrue(0 < times["min"] <= times["median"] <= times["max"])
 
     def test_every_key_is_documented(self):
         known = set(re.findall(r"`([^`]+)`", DOCUMENTED.read_text(encoding="utf-8")))
         stats = self.stats(PHANTOM, *QUICK, "--heatmap", "layers", "--verify")
         settings = set(re.findall(r"(?m)^\| `([a-z-]+)`", SETTINGS.read_text(encoding="utf-8")))
-        self.assertEqual({key.replace("_", "-") for key in stats.pop("settings")}, settings)
+        self.assertEqual(set(stats.pop("settings")), set(map(key_of, settings)))
         for part in (stats, *stats.values()):
             self.assertLessEqual(set(part) if isinstance(part, dict) else set(), known)
 
@@ -182,7 +183,7 @@ class Statistics(CliTest):
         orders = {order: self.stats(*dense, "--order", order) for order in ("back-to-front", "front-to-back", "auto")}
         for order in ("back-to-front", "front-to-back"):
             self.assertEqual(orders[order]["plan"]["order"], order)
-        counts = {order: stats["counters"]["layers_evaluated"] for order, stats in orders.items()}
+        counts = {order: stats["counters"]["layersEvaluated"] for order, stats in orders.items()}
         self.assertLess(counts["front-to-back"], 0.9 * counts["back-to-front"])
         self.assertEqual(counts["auto"], counts[orders["auto"]["plan"]["order"]])
         self.assertEqual(self.stats(*self.sparse(), "--termination", "off")["plan"]["order"], "back-to-front")
@@ -191,9 +192,9 @@ class Statistics(CliTest):
         sparse = (*self.sparse(), "--termination", "off")
         without = self.stats(*sparse, "--skip", "none")["counters"]
         skipping = self.stats(*sparse, "--skip", "proximity")["counters"]
-        self.assertEqual((without["layers_skipped"], without["skip_fetches"]), (0, 0))
-        self.assertGreater(skipping["layers_skipped"], 0)
-        self.assertLess(skipping["layers_evaluated"], without["layers_evaluated"])
+        self.assertEqual((without["layersSkipped"], without["skipFetches"]), (0, 0))
+        self.assertGreater(skipping["layersSkipped"], 0)
+        self.assertLess(skipping["layersEvaluated"], without["layersEvaluated"])
 
     def test_explain_gives_reasons_and_the_measured_ratio_is_the_fastest(self):
         text = self.succeeds("render", PHANTOM, "-o", "p.png", "--size", "64x64", "--layers", "16", "--explain")
@@ -217,6 +218,7 @@ class Sweep(CliTest):
         rows = sweep["rows"]
         for key in ("command", "commit", "date", "device", "volume", "conditions", "memory"):
             self.assertTrue(sweep[key], key)
+        self.assertEqual(odd_keys(sweep), [])
         total = sweep["conditions"]["totalLayers"]
         for skip in ("none", "proximity"):
             self.assertEqual({row["layersPerPlane"] for row in rows if row["skip"] == skip}, {*self.LAYERS, total})
@@ -233,7 +235,7 @@ class Sweep(CliTest):
         for line, row in zip(table, rows):
             self.assertEqual((int(line["planes"]), int(line["layersPerPlane"]), line["skip"]),
                              (row["planes"], row["layersPerPlane"], row["skip"]))
-            self.assertEqual(int(line["layers_evaluated"]), row["counters"]["layers_evaluated"])
+            self.assertEqual(int(line["layers_evaluated"]), row["counters"]["layersEvaluated"])
             self.assertEqual((float(line["frame_ms_median"]), line["jitter"]), (row["frameMs"]["median"], "false"))
 
         page = folder / "report.html"

@@ -10,6 +10,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
 from cli_case import PHANTOM, QUICK, CliTest, main  # noqa: E402
+from report_keys import key_of  # noqa: E402
 
 COMMANDS = ("render", "sweep", "error", "stability", "skipbench", "edit", "info", "device")
 
@@ -104,7 +105,7 @@ class Help(CliTest):
         for name in names:
             self.assertRegex(text, rf"(?m)^  --{name} ")
         held = self.stats(PHANTOM, *QUICK)["settings"]
-        self.assertEqual(set(held), {name.replace("-", "_") for name in names})
+        self.assertEqual(set(held), set(map(key_of, names)))
         self.assertEqual((held["layers"], held["planes"], held["jitter"], held["classify"]), (16, 4, False, "post"))
 
     def test_a_colour_may_have_its_sign(self):

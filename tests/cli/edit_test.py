@@ -14,14 +14,17 @@ import tempfile
 import unittest
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
+from report_keys import key_of, odd_keys  # noqa: E402
+
 SLABCAST = None  # the program, from the command line
 SMALL = ("phantom:vessels:32", "--size", "48x40", "--layers-per-plane", "16", "--octree-frames", "1")
 KEYS = {"frame", "step", "edit", "progress", "structure", "frameMs", "parts", "octreeMs", "overOctree", "naiveMs",
         "counters"}
-SUMMARY = {"compared_with", "worst_over_octree_frame", "over_octree_frame", "worst_added_over_octree_frame",
-           "worst_octree_frame_over_median", "worst_of_single_replays", "frames", "edits", "budget_ms",
-           "frames_over_budget", "frame_ms", "edit_frame_ms", "edit_ms", "octree_frame_ms", "naive",
-           "frames_by_structure", "hand_overs"}
+SUMMARY = {"comparedWith", "worstOverOctreeFrame", "overOctreeFrame", "worstAddedOverOctreeFrame",
+           "worstOctreeFrameOverMedian", "worstOfSingleReplays", "frames", "edits", "budgetMs",
+           "framesOverBudget", "frameMs", "editFrameMs", "editMs", "octreeFrameMs", "naive",
+           "framesByStructure", "handOvers"}
 BONE = {"points": [{"value": 100, "color": [1, 1, 1], "opacity": 0}, {"value": 200, "color": [1, 0.5, 0], "opacity": 0.5}]}
 
 
@@ -61,8 +64,8 @@ class UsualEditsTest(unittest.TestCase):
     def test_every_frame_is_as_from_scratch(self):
         self.assertEqual(self.run_.returncode, 0, self.run_.stderr)
         self.assertEqual([row["frame"] for row in self.rows if not row["equal"]], [])
-        self.assertEqual(self.summary["frames_equal"], len(self.rows))
-        self.assertEqual(self.summary["frames_to_correct"], 1)
+        self.assertEqual(self.summary["framesEqual"], len(self.rows))
+        self.assertEqual(self.summary["framesToCorrect"], 1)
 
     def test_keys(self):
         self.assertLessEqual({"command", "commit", "date", "device", "volume", "conditions", "builds"},
@@ -70,6 +73,7 @@ class UsualEditsTest(unittest.TestCase):
         self.assertLessEqual(SUMMARY, set(self.summary))
         for row in self.rows:
             self.assertLessEqual(KEYS, set(row), row["frame"])
+        self.assertEqual(odd_keys(self.report), [])
 
     def test_every_key_is_documented(self):
         text = (Path(__file__).resolve().parent.parent.parent / "docs" / "reports.md").read_text(encoding="utf-8")
@@ -86,12 +90,12 @@ class UsualEditsTest(unittest.TestCase):
 
     def test_worst_frame_is_the_worst(self):
         worst = max(row["frameMs"] / row["octreeMs"] for row in self.rows)
-        self.assertAlmostEqual(self.summary["worst_over_octree_frame"], worst, places=9)
-        over = sum(row["frameMs"] > self.summary["budget_ms"] for row in self.rows)
-        self.assertEqual(self.summary["frames_over_budget"], over)
+        self.assertAlmostEqual(self.summary["worstOverOctreeFrame"], worst, places=9)
+        over = sum(row["frameMs"] > self.summary["budgetMs"] for row in self.rows)
+        self.assertEqual(self.summary["framesOverBudget"], over)
 
     def test_hands_over_when_edits_pause(self):
-        self.assertGreaterEqual(self.summary["hand_overs"], 1)
+        self.assertGreaterEqual(self.summary["handOvers"], 1)
         structures = {row["structure"] for row in self.rows}
         self.assertLessEqual({"bitfield-octree", "proximity"}, structures)
         for row in self.rows:
@@ -104,7 +108,8 @@ class UsualEditsTest(unittest.TestCase):
         self.assertEqual([line["structure"] for line in lines], [row["structure"] for row in self.rows])
         for counter in ("fragments", "layers_evaluated", "layers_skipped", "volume_fetches", "skip_fetches",
                         "stretches", "blocks_visited"):
-            self.assertEqual([int(line[counter]) for line in lines], [row["counters"][counter] for row in self.rows])
+            self.assertEqual([int(line[counter]) for line in lines],
+                             [row["counters"][key_of(counter)] for row in self.rows])
 
     def test_page_holds_all_by_itself(self):
         page = (self.folder / "report.html").read_text(encoding="utf-8")
@@ -137,7 +142,7 @@ class ScriptTest(Folder):
             self.assertEqual(set(row["parts"]), {"editMs", "workMs", "prepareMs", "drawMs"})
             self.assertAlmostEqual(row["frameMs"], sum(row["parts"].values()), places=9)
         worst = max(row["frameMs"] / row["octreeMs"] for row in report["rows"])
-        self.assertAlmostEqual(report["summary"]["worst_of_single_replays"], worst, places=9)
+        self.assertAlmostEqual(report["summary"]["worstOfSingleReplays"], worst, places=9)
 
     def test_structures_are_as_asked(self):
         run = edit(*SMALL, "--interpolate", "linear,angio", "--frames", 20, "--skip", "minmax-octree", "--classify",
@@ -146,9 +151,9 @@ class ScriptTest(Folder):
         report = self.report()
         self.assertEqual(report["builds"]["always"]["structure"], "minmax-octree")
         self.assertNotIn("settled", report["builds"])
-        self.assertEqual(report["summary"]["compared_with"], "minmax-octree")
+        self.assertEqual(report["summary"]["comparedWith"], "minmax-octree")
         self.assertIn("by the min-max octree at rest", (self.out / "report.html").read_text(encoding="utf-8"))
-        self.assertEqual(report["summary"]["frames_equal"], 20)
+        self.assertEqual(report["summary"]["framesEqual"], 20)
 
 
     def test_what_changes_nothing_is_no_edit(self):
@@ -171,11 +176,11 @@ class ScriptTest(Folder):
         run = edit(*SMALL, "--interpolate", "linear,linear", "--frames", 20, "--verify", "--out", self.out)
         self.assertEqual(run.returncode, 0, run.stderr)
         summary = self.report()["summary"]
-        self.assertEqual((summary["edits"], summary["frames_equal"]), (0, 20))
-        for empty in (summary["edit_frame_ms"], summary["edit_ms"], summary["naive"]["edit_frame_ms"],
-                      summary["frames_to_correct"]):
+        self.assertEqual((summary["edits"], summary["framesEqual"]), (0, 20))
+        for empty in (summary["editFrameMs"], summary["editMs"], summary["naive"]["editFrameMs"],
+                      summary["framesToCorrect"]):
             self.assertIsNone(empty)
-        self.assertGreater(summary["worst_over_octree_frame"], 0)
+        self.assertGreater(summary["worstOverOctreeFrame"], 0)
 
 
 class RefusalTest(Folder):

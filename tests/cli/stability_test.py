@@ -14,6 +14,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
+from report_keys import odd_keys  # noqa: E402
+
 SLABCAST = None  # the program, from the command line
 KEYS = {"family", "name", "quantity", "bound", "reason", "measured", "pass"}
 OPTIONAL_KEYS = {"failure", "pictures", "series", "leftOut"}
@@ -70,6 +73,7 @@ class ReducedRunTest(unittest.TestCase):
     def test_keys(self):
         self.assertLessEqual({"command", "commit", "date", "device", "reduced", "seconds"}, set(self.report))
         self.assertTrue(self.report["reduced"])
+        self.assertEqual(odd_keys(self.report), [])
         for case in self.cases:
             self.assertLessEqual(KEYS, set(case), case["name"])
             self.assertLessEqual(set(case), KEYS | OPTIONAL_KEYS, case["name"])

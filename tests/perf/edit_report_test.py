@@ -29,7 +29,7 @@ def frame(i):
             "progress": "swapped" if i % 60 == 52 else "settled" if settled else "waiting",
             "structure": "proximity" if settled else "bitfield-octree", "frameMs": sum(parts.values()), "parts": parts,
             "octreeMs": octree, "naiveMs": 7 + (40 if edited else 0), "equal": True,
-            "counters": {"volume_fetches": 4e6, "skip_fetches": 1e6 + 1e4 * i}}
+            "counters": {"volumeFetches": 4e6, "skipFetches": 1e6 + 1e4 * i}}
 
 
 def measured():
@@ -44,12 +44,12 @@ def measured():
             "builds": {"always": {"structure": "bitfield-octree", "blockEdge": 4, "ms": 50, "gpuBytes": 600000},
                        "settled": {"structure": "proximity", "blockEdge": 4, "lastMs": 5, "gpuBytes": 110592},
                        "naiveMs": 40},
-            "summary": {"compared_with": "bitfield-octree", "worst_over_octree_frame": worst,
-                        "worst_of_single_replays": 1.41, "worst_added_over_octree_frame": 1.237,
-                        "worst_octree_frame_over_median": 1.33, "budget_ms": 12,
-                        "budget_given": False, "frames_over_budget": 0, "frames_equal": FRAMES, "frames_to_correct": 1,
-                        "frame_ms": {"median": 8.5, "p90": 9.5, "max": 10.1},
-                        "naive": {"frame_ms": {"median": 47}, "worst_over_octree_frame": 6.6, "frames_over_budget": 90}},
+            "summary": {"comparedWith": "bitfield-octree", "worstOverOctreeFrame": worst,
+                        "worstOfSingleReplays": 1.41, "worstAddedOverOctreeFrame": 1.237,
+                        "worstOctreeFrameOverMedian": 1.33, "budgetMs": 12,
+                        "budgetGiven": False, "framesOverBudget": 0, "framesEqual": FRAMES, "framesToCorrect": 1,
+                        "frameMs": {"median": 8.5, "p90": 9.5, "max": 10.1},
+                        "naive": {"frameMs": {"median": 47}, "worstOverOctreeFrame": 6.6, "framesOverBudget": 90}},
             "rows": rows}
 
 
@@ -81,7 +81,7 @@ class EditReportTest(ReportTest):
             self.assertIn(said, page)
 
         data = measured()
-        data["summary"]["compared_with"] = "partitioned"
+        data["summary"]["comparedWith"] = "partitioned"
         data["builds"]["always"]["structure"] = "partitioned"
         del data["builds"]["settled"]
         for row in data["rows"]:
@@ -93,7 +93,7 @@ class EditReportTest(ReportTest):
 
     def test_without_edits_there_is_no_time_of_one(self):
         data = measured()
-        data["summary"]["frames_to_correct"] = data["summary"]["edit_frame_ms"] = None
+        data["summary"]["framesToCorrect"] = data["summary"]["editFrameMs"] = None
         for row in data["rows"]:
             row["edit"] = False
         page = self.page(data)
@@ -102,7 +102,7 @@ class EditReportTest(ReportTest):
 
     def test_survives_what_is_not_known(self):
         data = measured()
-        del data["summary"]["frames_equal"], data["builds"], data["summary"]["budget_ms"], data["conditions"]
+        del data["summary"]["framesEqual"], data["builds"], data["summary"]["budgetMs"], data["conditions"]
         for row in data["rows"]:
             row["counters"] = None
         page = self.page(data)

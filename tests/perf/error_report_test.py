@@ -54,8 +54,8 @@ def row(classification, target, termination, jitter, spacing, layers):
         "order": {"total": 0.9 * order, "sampling": order, "table": None, "gpu": None},
         "date": "2026-01-02T10:00:05Z", "coarser": None,
         "frameMs": {"median": ms, "min": 0.95 * ms, "max": 1.2 * ms, "p10": ms, "p90": ms, "n": 4},
-        "counters": {"fragments": 9000 * planes, "layers_evaluated": fetches, "layers_skipped": 2 * fetches,
-                     "volume_fetches": fetches, "skip_fetches": 900 * (planes + 20)},
+        "counters": {"fragments": 9000 * planes, "layersEvaluated": fetches, "layersSkipped": 2 * fetches,
+                     "volumeFetches": fetches, "skipFetches": 900 * (planes + 20)},
         "command": f"slabcast render skull.nrrd -o {name}.png --layer-spacing {spacing}",
         "pictures": {"thumbnail": f"pictures/{name}.png", "difference": f"pictures/{name}_difference.png",
                      "differenceFactor": 64}}
@@ -78,7 +78,7 @@ def milliseconds(entry):
 
 
 def fetches(entry):
-    return entry["counters"]["volume_fetches"] + entry["counters"]["skip_fetches"]
+    return entry["counters"]["volumeFetches"] + entry["counters"]["skipFetches"]
 
 
 def measured(spacings=(2, 0.5), layers=(1, 16, 0), jitters=(False, True), terminations=("off",)):

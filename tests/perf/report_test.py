@@ -42,9 +42,9 @@ def row(planes, layers, skip, ms):
         "planes": planes, "layersPerPlane": layers, "form": form, "skip": skip, "tighten": True,
         "frameMs": {"median": ms, "min": 0.9 * ms, "max": 1.3 * ms, "p10": 0.95 * ms, "p90": 1.1 * ms, "n": 36},
         "counters": {
-            "fragments": 1_000_000 * planes, "layers_evaluated": evaluated,
-            "layers_skipped": 444_000_000 - evaluated, "volume_fetches": evaluated,
-            "skip_fetches": 0 if skip == "none" else 1_000_000 * (planes + 20)},
+            "fragments": 1_000_000 * planes, "layersEvaluated": evaluated,
+            "layersSkipped": 444_000_000 - evaluated, "volumeFetches": evaluated,
+            "skipFetches": 0 if skip == "none" else 1_000_000 * (planes + 20)},
         "compileMs": 3.0 + 0.8 * min(layers, 64), "variant": f"post-{skip}-{form}{layers}",
         "thumbnail": f"thumbnails/{planes}x{layers}_{skip}.png"}
 

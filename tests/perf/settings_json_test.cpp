@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "perf/report_json.h"
+
 namespace slabcast::test {
 namespace {
 
@@ -12,10 +14,15 @@ TEST(SettingsJson, holdsEverySettingByItsName) {
     const json all = toJson(Settings{});
     EXPECT_EQ(all.size(), settingsTable().size());
     for (const Setting& setting : settingsTable()) {
-        std::string key = setting.name;
-        std::replace(key.begin(), key.end(), '-', '_');
-        EXPECT_TRUE(all.contains(key)) << key;
+        EXPECT_TRUE(all.contains(keyOf(setting.name))) << setting.name;
     }
+}
+
+TEST(SettingsJson, keysAreLowerCamel) {
+    EXPECT_EQ(keyOf("layers"), "layers");
+    EXPECT_EQ(keyOf("layers-per-plane"), "layersPerPlane");
+    EXPECT_EQ(keyOf("early exit"), "earlyExit");
+    EXPECT_EQ(keyOf(""), "");
 }
 
 TEST(SettingsJson, valuesAreNumbersWordsAndNothing) {
@@ -28,12 +35,12 @@ TEST(SettingsJson, valuesAreNumbersWordsAndNothing) {
     EXPECT_EQ(all.at("planes"), json(12));
     EXPECT_TRUE(all.at("planes").is_number_integer());
     EXPECT_TRUE(all.at("layers").is_null());
-    EXPECT_EQ(all.at("layer_spacing"), json(1.0));
+    EXPECT_EQ(all.at("layerSpacing"), json(1.0));
     EXPECT_EQ(all.at("jitter"), json(true));
     EXPECT_EQ(all.at("shade"), json(false));
     EXPECT_EQ(all.at("order"), json("front-to-back"));
     EXPECT_TRUE(all.at("skip").is_null());
-    EXPECT_EQ(all.at("value_range"), json({-0.5, 2.0}));
+    EXPECT_EQ(all.at("valueRange"), json({-0.5, 2.0}));
     EXPECT_EQ(all.at("termination"), json(0.99609375));
 }
 

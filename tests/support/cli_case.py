@@ -10,6 +10,8 @@ import unittest
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from report_keys import odd_keys
+
 PHANTOM = "phantom:shells:24"
 RATIO = ("--layers", "16", "--planes", "4")  # what is given is not measured
 QUICK = ("--size", "32x32", *RATIO)
@@ -90,7 +92,9 @@ class CliTest(unittest.TestCase):
 
     def stats(self, *arguments):
         self.picture("--stats", "s.json", *arguments)
-        return json.loads((self.folder / "s.json").read_text())
+        stats = json.loads((self.folder / "s.json").read_text())
+        self.assertEqual(odd_keys(stats), [])
+        return stats
 
 
 def main(usage):

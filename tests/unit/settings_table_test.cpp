@@ -225,8 +225,8 @@ std::string page() {
         "# Settings\n\n"
         "What a picture depends on beside volume, transfer function and view. Each is an option "
         "of the command line (`--layers 128`), a member of `slabcast::Settings`, and an entry of "
-        "`settings` in `stats.json`, there with `_` for `-`. This page is made from the table in "
-        "`core/plan/settings_table.cpp`, and a test holds it to that.\n";
+        "`settings` in `stats.json`, there in lowerCamel: `layersPerPlane`. This page is made from "
+        "the table in `core/plan/settings_table.cpp`, and a test holds it to that.\n";
     std::string group;
     for (const Setting& setting : settingsTable()) {
         if (setting.group != group) {
