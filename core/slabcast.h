@@ -16,6 +16,9 @@
 // Every call returns a Result: a value, or an Error whose code says what to do about it and whose
 // detail is one line for people. Nothing throws. A breached contract aborts; the host may hear of
 // it first (DeviceOptions::contract).
+//
+// GL is called in the thread that calls the library. Heavy steps on the CPU share a thread per
+// core, or the threads of the host's own job system (DeviceOptions::executor).
 
 #include "core/base/error.h"
 #include "core/base/executor.h"

@@ -24,7 +24,7 @@ public:
 Executor& executor();
 
 /// Takes the host's executor from here on, or the library's own again (null). The host's must
-/// outlive all work. Contract: no work is going on.
+/// outlive all work. Contract: no work is going on. DeviceOptions::executor does so for a host.
 void setExecutor(Executor* host);
 
 } // namespace slabcast

@@ -73,6 +73,9 @@ Device::Device(gl::Caps caps, std::vector<TexelFormatTest> formats, DeviceOption
     if (options.contract != nullptr) {
         setContractHook(options.contract);
     }
+    if (options.executor != nullptr) {
+        setExecutor(options.executor);
+    }
     state_ = std::make_shared<const State>(
         State{std::move(caps), std::move(formats), quirks, std::move(options.log)});
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/contract_hook.h"
+#include "core/base/executor.h"
 #include "core/gl/caps.h"
 #include "core/gl/get_proc.h"
 #include "core/scene/texel_format.h"
@@ -48,6 +49,13 @@ struct DeviceOptions {
     /// Hears of a mistake of the calling code before the process aborts; one hook for the process
     /// (setContractHook()). Null leaves the hook as it is.
     ContractHook contract = nullptr;
+    /// Lends its threads to heavy CPU steps: statistics, texels, skip structures, tables. Installed
+    /// when the device is made, one for the process (setExecutor()): what is done before, such as
+    /// making a volume, runs on what was set then. Not owned: it must outlive all work, that of
+    /// other devices too, or be replaced first by setExecutor(). Its run() is called in whatever
+    /// thread calls the library; its threads call no GL. Contract: no work is going on. Null leaves
+    /// what is set; at first a thread per core of the library's own.
+    Executor* executor = nullptr;
 };
 
 /// A GL context and what it can do: loaded functions, limits and extensions, the results of drawing

@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/scene/scene_api.h"
+#include "core/volume/phantoms.h"
+
 namespace slabcast {
 namespace {
 
@@ -86,6 +89,40 @@ TEST(Device, LinesGoToTheHostsHook) {
                         {.log = [&](const std::string& line) { lines.push_back(line); }});
     device.log("built on the CPU");
     EXPECT_EQ(lines, std::vector<std::string>{"built on the CPU"});
+}
+
+/// Runs all in the calling thread and says how often it was asked.
+class HostsExecutor : public Executor {
+public:
+    ~HostsExecutor() override { setExecutor(nullptr); }
+    int concurrency() const override { return 2; }
+    void run(int count, FunctionRef<void(int)> task) override {
+        ++runs;
+        for (int i = 0; i < count; ++i) {
+            task(i);
+        }
+    }
+    int runs = 0;
+};
+
+TEST(Device, WorkRunsOnTheHostsThreads) {
+    const Volume volume = makePhantom("phantom:shells:32").value();
+    HostsExecutor host;
+    const Device device(capsOf("x"), allUsable(), {.executor = &host});
+    EXPECT_EQ(&executor(), &host);
+    EXPECT_EQ(host.runs, 0);
+
+    Scene scene = Scene::create(volume, device).value();
+    const int toCreate = host.runs;
+    EXPECT_GT(toCreate, 0) << "statistics and texels";
+    const TransferFunction ramp{
+        .points = {{0.0, glm::dvec3(1.0), 0.0}, {255.0, glm::dvec3(1.0), 0.9}}};
+    ASSERT_TRUE(scene.setLook({.tf = ramp}).has_value());
+    ASSERT_TRUE(scene.provide({.skip = {.structure = SkipStructure::Proximity}}).has_value());
+    EXPECT_GT(host.runs, toCreate) << "the skip structure";
+
+    const Device another(capsOf("x"), allUsable());
+    EXPECT_EQ(&executor(), &host) << "who says nothing of threads leaves what is set";
 }
 
 TEST(DeviceDeathTest, ABreachedContractIsToldToTheHostFirst) {
