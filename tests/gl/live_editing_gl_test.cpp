@@ -323,4 +323,24 @@ TEST_F(LiveEditingTest, ACopyHasALookOfItsOwn) {
         << "one texture for both";
 }
 
+// It shares the structures of what is edited, which know that one's TF alone: here they are of one
+// that shows nothing, so that all of the copy would be skipped.
+TEST_F(LiveEditingTest, ACopyUnderAnotherLookIsNotEdited) {
+    LiveScene scene = edited({});
+    ASSERT_TRUE(scene.edit(kNothing).has_value());
+    Scene copy = scene;
+    ASSERT_TRUE(show(copy, {.tf = band(300.0, 3000.0)}, noSkip().options).has_value());
+    EXPECT_EQ(copy.live(), nullptr);
+    EXPECT_EQ(copy.skip().options.structure, SkipStructure::None);
+    const Picture picture = draw(copy);
+    EXPECT_TRUE(std::any_of(picture.pixels.begin(), picture.pixels.end(),
+                            [](glm::vec4 p) { return p.a > 0.0F; }));
+    Scene alone = makeScene(balls(), {.tf = band(300.0, 3000.0)}, noSkip().options);
+    EXPECT_EQ(differingPixels(picture, draw(alone)), 0);
+
+    EXPECT_NE(scene.scene().live(), nullptr) << "what it was copied from is edited on";
+    ASSERT_TRUE(scene.edit(band(500.0, 2500.0)).has_value());
+    EXPECT_EQ(differingPixels(draw(scene), fromScratch(scene)), 0);
+}
+
 } // namespace slabcast::test
