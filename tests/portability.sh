@@ -46,14 +46,16 @@ main() {
         ;;
     esac
     echo "$which: $("${command[0]}" --version | head -n 1)"
-    check perf "${flags[@]}"
-    check core "${flags[@]}" "${@:2}"
+    local status=0
+    check perf "${flags[@]}" || status=1
+    check core "${flags[@]}" "${@:2}" || status=1
+    return $status
 }
 
 # Every source of a folder by `command`, 8 a process. All that fail are shown: xargs goes on, and fails at the end.
 check() {
     find "$1" -name '*.cpp' -print0 |
-        xargs -0 -n 8 -P "$(nproc)" "${command[@]}" -std=c++20 -fsyntax-only -I. "${@:2}" -Werror
+        xargs -0 -n 8 -P "$(nproc)" "${command[@]}" -std=c++20 -fsyntax-only -I. "${@:2}" -Werror || return
     echo "$which: $(find "$1" -name '*.cpp' | wc -l) sources of $1 compile"
 }
 

@@ -180,7 +180,8 @@ void StateGuard::restore(GLenum target, const Buffers& buffers) {
         if (range.size == 0) { // bound as a whole, or not bound
             BindBufferBase(target, i, asName(range.buffer));
         } else {
-            BindBufferRange(target, i, asName(range.buffer), range.offset, range.size);
+            BindBufferRange(target, i, asName(range.buffer), GLintptr(range.offset),
+                            GLsizeiptr(range.size));
         }
     }
     BindBuffer(target, asName(buffers.generic)); // last: indexed binds move it too

@@ -86,9 +86,9 @@ void GridRebuild::markChanged(std::uint8_t freeByte) {
     stages_.push_back(roomFor(grid_));
     const std::int64_t perSlice = blocksPerSlice(grid_);
     stages_.push_back({grid_.blocks.z, [=, this, &before](std::int64_t begin, std::int64_t end) {
-                           std::transform(before.counts.begin() + begin * perSlice,
-                                          before.counts.begin() + end * perSlice,
-                                          grid_.counts.begin() + begin * perSlice,
+                           const std::uint8_t* counts = before.counts.data();
+                           std::transform(counts + begin * perSlice, counts + end * perSlice,
+                                          grid_.counts.data() + begin * perSlice,
                                           [=](std::uint8_t count) {
                                               return count == 0 ? std::uint8_t(0) : freeByte;
                                           });
@@ -97,14 +97,16 @@ void GridRebuild::markChanged(std::uint8_t freeByte) {
     const auto markCube = [=, this](glm::ivec3 cube, int level) {
         const glm::ivec3 first = cube << level;
         const glm::ivec3 end = glm::min((cube + 1) << level, grid_.blocks);
+        const std::uint32_t* words = source_.ranges->words.data();
+        std::uint8_t* counts = grid_.counts.data();
         std::int64_t more = 0;
         for (int z = first.z; z < end.z; ++z) {
             for (int y = first.y; y < end.y; ++y) {
                 const std::int64_t row = z * perSlice + std::int64_t(y) * grid_.blocks.x;
                 for (std::int64_t i = row + first.x; i < row + end.x; ++i) {
-                    const bool occupied = visible(*visibility_, source_.ranges->words[i]);
-                    more += int(occupied) - int(grid_.counts[i] == 0);
-                    grid_.counts[i] = occupied ? 0 : freeByte;
+                    const bool occupied = visible(*visibility_, words[i]);
+                    more += int(occupied) - int(counts[i] == 0);
+                    counts[i] = occupied ? 0 : freeByte;
                 }
             }
         }
@@ -114,7 +116,7 @@ void GridRebuild::markChanged(std::uint8_t freeByte) {
     stages_.push_back(
         {std::int64_t(regions.cubes.size()), [=, &regions](std::int64_t begin, std::int64_t end) {
              for (std::int64_t i = begin; i < end; ++i) {
-                 markCube(regions.cubes[i], regions.level);
+                 markCube(regions.cubes.data()[i], regions.level);
              }
          }});
     stages_.push_back(
@@ -124,10 +126,10 @@ void GridRebuild::markChanged(std::uint8_t freeByte) {
 void GridRebuild::compareWithEarlier() {
     const std::int64_t perSlice = blocksPerSlice(grid_);
     const auto compareSlices = [=, this](std::int64_t begin, std::int64_t end) {
-        const auto first = grid_.counts.begin() + begin * perSlice;
+        const std::uint8_t* first = grid_.counts.data() + begin * perSlice;
         const bool same =
             std::equal(first, first + (end - begin) * perSlice,
-                       earlier_.grid->counts.begin() + begin * perSlice,
+                       earlier_.grid->counts.data() + begin * perSlice,
                        [](std::uint8_t a, std::uint8_t b) { return (a == 0) == (b == 0); });
         if (!same) {
             differs_ = true;

@@ -20,9 +20,9 @@ Result<OctreeLevel> blockRanges(const TexelCodes& codes, int blockEdgeVoxels,
 
 BuildStage roomFor(FreeLengths& grid) {
     const std::int64_t perSlice = std::int64_t(grid.blocks.x) * grid.blocks.y;
-    grid.counts.reserve(perSlice * grid.blocks.z);
+    grid.counts.reserve(std::size_t(perSlice * grid.blocks.z));
     const auto addSlices = [=, &grid](std::int64_t, std::int64_t end) {
-        grid.counts.resize(end * perSlice);
+        grid.counts.resize(std::size_t(end * perSlice));
     };
     return {.items = grid.blocks.z, .run = addSlices, .inOrder = true};
 }
@@ -40,16 +40,18 @@ BuildStages occupancyStages(const OctreeLevel& ranges, int blockEdgeVoxels,
     grid = {.blocks = blocks, .blockEdgeVoxels = blockEdgeVoxels};
     const auto occupiedInSlice = std::make_shared<std::vector<std::int64_t>>(blocks.z);
     const auto markSlices = [=, &ranges, &visibility, &grid](std::int64_t begin, std::int64_t end) {
+        const std::uint32_t* words = ranges.words.data();
+        std::uint8_t* counts = grid.counts.data();
         for (std::int64_t z = begin; z < end; ++z) {
             std::int64_t occupied = 0;
             for (std::int64_t i = z * perSlice; i < (z + 1) * perSlice; ++i) {
-                const NodeRange range = NodeRange::of(ranges.words[i]);
+                const NodeRange range = NodeRange::of(words[i]);
                 const bool visible =
                     visibility.visible(std::uint16_t(range.least), std::uint16_t(range.greatest));
-                grid.counts[i] = visible ? bytes.occupied : bytes.free;
+                counts[i] = visible ? bytes.occupied : bytes.free;
                 occupied += visible;
             }
-            (*occupiedInSlice)[z] = occupied;
+            occupiedInSlice->data()[z] = occupied;
         }
     };
     const auto count = [=, &grid](std::int64_t, std::int64_t) {

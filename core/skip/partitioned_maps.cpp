@@ -31,12 +31,15 @@ PartitionRanges partitionRanges(const OctreeLevel& ranges, const ValueBins& bins
     constexpr std::int64_t kGrain = 1 << 16;
     PartitionRanges partitions{std::vector<std::uint8_t>(ranges.words.size()),
                                std::vector<std::uint8_t>(ranges.words.size())};
+    const std::uint32_t* words = ranges.words.data();
+    std::uint8_t* first = partitions.first.data();
+    std::uint8_t* last = partitions.last.data();
     parallelFor(std::int64_t(ranges.words.size()), kGrain,
-                [&](std::int64_t begin, std::int64_t end) {
+                [=, &bins](std::int64_t begin, std::int64_t end) {
                     for (std::int64_t i = begin; i < end; ++i) {
-                        const NodeRange range = NodeRange::of(ranges.words[i]);
-                        partitions.first[i] = bins.binOfCode[range.least];
-                        partitions.last[i] = bins.binOfCode[range.greatest];
+                        const NodeRange range = NodeRange::of(words[i]);
+                        first[i] = bins.binOfCode[range.least];
+                        last[i] = bins.binOfCode[range.greatest];
                     }
                 });
     return partitions;
@@ -104,7 +107,7 @@ Result<PartitionedMaps> buildPartitionedMaps(const TexelCodes& codes, ValueBins 
         return tl::unexpected(ranges.error());
     }
     const PartitionRanges partitions = partitionRanges(*ranges, bins);
-    std::vector<std::uint8_t> distances(bytes);
+    std::vector<std::uint8_t> distances(static_cast<std::size_t>(bytes));
     const auto transform = [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t p = begin; p < end; ++p) {
             const ChebyshevTransform map{blocks, distances.data() + p * perMap};
@@ -126,7 +129,7 @@ FreeLengths merged(const PartitionedMaps& maps, const BinSet& set) {
     const std::vector<int> partitions = members(set, maps.bins.count);
     FreeLengths result{.blocks = maps.blocks,
                        .blockEdgeVoxels = maps.blockEdgeVoxels,
-                       .counts = std::vector<std::uint8_t>(perMap, 255)};
+                       .counts = std::vector<std::uint8_t>(std::size_t(perMap), 255)};
     std::atomic<std::int64_t> occupied{0};
     parallelFor(perMap, kGrain, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t first = begin; first < end; first += kRun) {

@@ -31,7 +31,7 @@ Result<gl::Buffer> makeStorage(const char* label, std::int64_t bytes) {
     gl::takeError();
     gl::Buffer buffer = gl::Buffer::make(label);
     gl::BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer.id());
-    gl::BufferData(GL_SHADER_STORAGE_BUFFER, bytes, nullptr, GL_DYNAMIC_COPY);
+    gl::BufferData(GL_SHADER_STORAGE_BUFFER, GLsizeiptr(bytes), nullptr, GL_DYNAMIC_COPY);
     return takeUploadError(label).map([&] { return std::move(buffer); });
 }
 

@@ -101,8 +101,8 @@ Result<std::vector<std::uint8_t>> downloadDistances(const GpuPartitions& partiti
     const gl::StateGuard guard;
     gl::MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     gl::BindBuffer(GL_SHADER_STORAGE_BUFFER, partitions.maps.id());
-    const auto* bytes = static_cast<const std::uint8_t*>(
-        gl::MapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, partitions.bytes, GL_MAP_READ_BIT));
+    const auto* bytes = static_cast<const std::uint8_t*>(gl::MapBufferRange(
+        GL_SHADER_STORAGE_BUFFER, 0, GLsizeiptr(partitions.bytes), GL_MAP_READ_BIT));
     if (bytes == nullptr) {
         return fail(ErrorCode::Internal, "the GPU's partitioned maps cannot be read (" +
                                              gl::errorName(gl::takeError()) + ")");
