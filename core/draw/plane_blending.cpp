@@ -1,6 +1,17 @@
 #include "core/draw/plane_blending.h"
 
+#include <array>
+
+#include "core/plan/accumulate_rules.h"
+
 namespace slabcast {
+
+namespace {
+
+/// By PlaneBlend.
+constexpr std::array kPlaneBlendings = {kOver, kUnder};
+
+} // namespace
 
 BlendSwitch::BlendSwitch(Blending first) : now_(first) {
     // Without the depth test neither depth mask nor polygon offset matter.
@@ -11,19 +22,26 @@ BlendSwitch::BlendSwitch(Blending first) : now_(first) {
     }
     gl::ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     gl::Enable(GL_BLEND);
-    gl::BlendEquation(GL_FUNC_ADD);
+    gl::BlendEquation(first.equation);
     gl::BlendFunc(first.source, first.destination);
 }
 
 void BlendSwitch::to(Blending blending) {
-    if (blending != now_) {
-        gl::BlendFunc(blending.source, blending.destination);
-        now_ = blending;
+    if (blending == now_) {
+        return;
     }
+    if (blending.equation != now_.equation) {
+        gl::BlendEquation(blending.equation);
+    }
+    gl::BlendFunc(blending.source, blending.destination);
+    now_ = blending;
 }
 
-Blending planeBlending(BlendOrder order) {
-    return order == BlendOrder::BackToFront ? kOver : kUnder;
+Blending planeBlending(const FramePlan& plan) {
+    const AccumulateRule& rule = ruleOf(plan.variant.accumulate);
+    const PlaneBlend blend =
+        plan.order == BlendOrder::BackToFront ? rule.backToFront : rule.frontToBack;
+    return kPlaneBlendings[static_cast<std::size_t>(blend)];
 }
 
 } // namespace slabcast

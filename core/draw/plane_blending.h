@@ -5,10 +5,11 @@
 
 namespace slabcast {
 
-/// Factors of what is drawn and of what is there; both are added.
+/// Factors of what is drawn and of what is there, and what is made of both.
 struct Blending {
     GLenum source;
     GLenum destination;
+    GLenum equation = GL_FUNC_ADD;
     bool operator==(const Blending&) const = default;
 };
 
@@ -16,20 +17,20 @@ inline constexpr Blending kOver{GL_ONE, GL_ONE_MINUS_SRC_ALPHA}; // premultiplie
 inline constexpr Blending kUnder{GL_ONE_MINUS_DST_ALPHA, GL_ONE};
 inline constexpr Blending kSum{GL_ONE, GL_ONE};
 
-/// Blending by some factors and nothing else of what GL does to fragments, whatever was enabled
+/// Blending in some way and nothing else of what GL does to fragments, whatever was enabled
 /// before the making of it: no test, no mask, no culling. What is drawn or cleared after that is
 /// drawn as it is.
 class BlendSwitch {
 public:
     explicit BlendSwitch(Blending first);
-    /// Other factors, where they are others.
+    /// Another way, where it is another.
     void to(Blending blending);
 
 private:
     Blending now_;
 };
 
-/// Planes over what is there, or under it.
-Blending planeBlending(BlendOrder order);
+/// Of the plan's planes: follows from how its layers are combined (kAccumulateRules) and its order.
+Blending planeBlending(const FramePlan& plan);
 
 } // namespace slabcast

@@ -324,7 +324,7 @@ void Renderer::State::drawLayer(std::size_t view, const ViewTarget& target, cons
                                 const gl::Program& program, BlendSwitch& blending) const {
     const Viewport& v = target.viewport;
     const glm::ivec2 size(v.width, v.height);
-    blending.to(planeBlending(plan.order));
+    blending.to(planeBlending(plan));
     layer.clear();
     gl::Viewport(0, 0, size.x, size.y);
     if (plan.planesPerMark > 0) {
@@ -385,7 +385,7 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
     gl::StateScope scope(state_->hostState);
     scope.touch();
     state_->drawer.upload(views.size());
-    BlendSwitch blending(planeBlending(plan.order));
+    BlendSwitch blending(planeBlending(plan));
     state_->textures.bind(scene.skip());
     state_->drawer.useVertices();
     bool inUse = false; // the program, and the blending, of planes
@@ -401,7 +401,7 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
         }
         if (!inUse) {
             program->use();
-            blending.to(planeBlending(plan.order));
+            blending.to(planeBlending(plan));
             inUse = true;
         }
         state_->drawDirectly(i, target, plan, *program);
@@ -441,7 +441,7 @@ Result<void> Renderer::State::count(const Scene& scene, const FramePlan& plan,
     }
     stage(0, scene, plan, target.view, {0, 0, v.width, v.height});
     drawer.upload(1);
-    BlendSwitch blending(planeBlending(plan.order)); // before what clears
+    BlendSwitch blending(planeBlending(plan)); // before what clears
     counters.begin();
     if (needsPicture) {
         constexpr GLuint kUnit = unitOf(Sampler::LayerBefore);
@@ -462,7 +462,7 @@ Result<void> Renderer::State::count(const Scene& scene, const FramePlan& plan,
         if (!needsPicture || runs.done()) {
             continue;
         }
-        blending.to(planeBlending(plan.order));
+        blending.to(planeBlending(plan));
         drawRun(layer, plan, size, **colours, shape, run);
         if (marked) {
             mark(layer, plan, size);

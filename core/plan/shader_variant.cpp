@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/gl/shader_text.h"
+#include "core/plan/accumulate_rules.h"
 #include "core/plan/frame_fields.h"
 #include "core/plan/shader_axes.h"
 
@@ -12,6 +13,7 @@ namespace slabcast {
 namespace {
 
 static_assert(std::size(kAxes) == static_cast<std::size_t>(Axis::Form) + 1);
+static_assert(std::size(axes::kAccumulate) == kAccumulateRules.size());
 static_assert(std::size(axes::kForm) == kUnrollLengths.size() + 1);
 
 const AxisValue& valueOn(const AxisInfo& axis, const ShaderVariant& variant) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "core/base/short_list.h"
+#include "core/plan/accumulate_rules.h"
 #include "core/plan/frame_plan.h"
 
 /// The decisions that make a plan, each in a file of its own. Pure: no GL, no clock, no text.
@@ -80,6 +82,12 @@ enum class LooksCost : std::uint8_t { SpareEightFetches, AsMeasuredHere, AsMeasu
 
 inline void because(FramePlan& plan, ReasonId id, std::array<double, 5> numbers = {}) {
     plan.reasons.add({id, numbers});
+}
+
+/// The opacity that rays are left at: what is asked for, where layers are combined so that there is
+/// one.
+inline std::optional<double> terminationOf(const PlanInput& in, const FramePlan& plan) {
+    return ruleOf(plan.variant.accumulate).terminates ? in.settings.termination : std::nullopt;
 }
 
 /// Planes that hold all layers.

@@ -23,7 +23,7 @@ constexpr int kLaunchCounts = 4;
 
 /// Of the densest material, straight ahead, until a ray is as good as opaque.
 double layersToSaturate(const PlanInput& in, const FramePlan& plan) {
-    return -std::log1p(-*in.settings.termination) /
+    return -std::log1p(-*terminationOf(in, plan)) /
            (in.facts.maxExtinctionPerMm * plan.lattice.spacingMm);
 }
 double planesToSaturate(const PlanInput& in, const FramePlan& plan) {
@@ -32,7 +32,7 @@ double planesToSaturate(const PlanInput& in, const FramePlan& plan) {
 
 /// Alpha gathers until what a plane adds to it is rounded away.
 bool targetSaturates(const PlanInput& in, const FramePlan& plan) {
-    const double saturated = *in.settings.termination - halfStepBelowOne(plan.target);
+    const double saturated = *terminationOf(in, plan) - halfStepBelowOne(plan.target);
     const double lacking = 1.0 - saturated;
     const double most = -std::expm1(-straightDepthOf(in, plan, plan.layersPerPlane));
     return lacking * most >= halfStepBelowOne(plan.target);
@@ -40,7 +40,7 @@ bool targetSaturates(const PlanInput& in, const FramePlan& plan) {
 
 /// Why planes behind opaque material are not left out; OrderFrontToBack where they can be.
 Reason chosen(const PlanInput& in, const FramePlan& plan) {
-    if (!in.settings.termination) {
+    if (!terminationOf(in, plan)) {
         return {ReasonId::OrderWithoutTermination};
     }
     if (plan.planes == 1) {
@@ -86,7 +86,7 @@ Result<void> decideOrder(const PlanInput& in, FramePlan& plan) {
     }
     reason.numbers[0] = double(plan.order);
     plan.reasons.add(reason);
-    if (plan.order == BlendOrder::BackToFront || !settings.termination || plan.planes == 1) {
+    if (plan.order == BlendOrder::BackToFront || !terminationOf(in, plan) || plan.planes == 1) {
         return {};
     }
     if (caps.framebufferFetch && !(caps.isSoftware && plan.layersPerPlane <= kLaunchCounts)) {
@@ -97,7 +97,7 @@ Result<void> decideOrder(const PlanInput& in, FramePlan& plan) {
         chooseMarks(in, plan);
     }
     if (plan.variant.fetchesTarget || plan.planesPerMark > 0) {
-        plan.terminationAlpha = *settings.termination;
+        plan.terminationAlpha = *terminationOf(in, plan);
     }
     return {};
 }

@@ -7,7 +7,7 @@ namespace slabcast {
 namespace {
 
 ReasonId chosen(const PlanInput& in, const FramePlan& plan) {
-    if (!in.settings.termination) {
+    if (!terminationOf(in, plan)) {
         return ReasonId::TerminationNotAsked;
     }
     if (plan.variant.fetchesTarget) {
@@ -17,7 +17,7 @@ ReasonId chosen(const PlanInput& in, const FramePlan& plan) {
         return ReasonId::TerminationOfOneLayer;
     }
     const double depth = mostDepthOf(in, plan, plan.layersPerPlane);
-    return 1.0 - std::exp(-depth) < *in.settings.termination ? ReasonId::TerminationTooThin
+    return 1.0 - std::exp(-depth) < *terminationOf(in, plan) ? ReasonId::TerminationTooThin
                                                              : ReasonId::TerminationOfSegments;
 }
 
@@ -33,10 +33,10 @@ double mostDepthOf(const PlanInput& in, const FramePlan& plan, double layers) {
 
 Result<void> decideTermination(const PlanInput& in, FramePlan& plan) {
     const ReasonId reason = chosen(in, plan);
-    because(plan, reason, {in.settings.termination.value_or(1.0)});
+    because(plan, reason, {terminationOf(in, plan).value_or(1.0)});
     if (reason == ReasonId::TerminationOfSegments) {
         plan.variant.terminates = true;
-        plan.terminationAlpha = *in.settings.termination;
+        plan.terminationAlpha = *terminationOf(in, plan);
     }
     return {};
 }
