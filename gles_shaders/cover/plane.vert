@@ -1,7 +1,11 @@
 // One proxy plane per instance. The unit polygon is static; where it lies comes from the outlines,
 // which are counted from the nearest plane.
 #include "segment/frame.glsl"
+#define planesPerOutline counts.z
 
+layout(std140) uniform OutlineBlock {
+    vec4 outlines[MAX_OUTLINES]; // xy: centre, zw: half size, normalised device coordinates
+};
 layout(location = 0) in vec2 unitPolygon;
 flat out int plane;
 uniform ivec2 planeRun; // the first instance's place from the nearest; the step to the next

@@ -11,8 +11,3 @@ layout(std140) uniform FrameBlock {
 #define firstPlane counts.x
 #define layersPerPlane counts.y
 #define octreeRise skipBlocks.w
-#define planesPerOutline counts.z
-
-layout(std140) uniform OutlineBlock {
-    vec4 outlines[MAX_OUTLINES]; // xy: centre, zw: half size, normalised device coordinates
-};

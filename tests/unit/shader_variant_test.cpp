@@ -216,7 +216,7 @@ bool holdsWord(const std::string& text, const std::string& word) {
 /// The fragment's text but for the frame block, and the macros that name members of it.
 std::string withoutFrameBlock(std::string text) {
     const std::size_t at = text.find("layout(std140) uniform FrameBlock");
-    const std::size_t end = text.find("#define planesPerOutline", at);
+    const std::size_t end = text.find("#define octreeRise", at);
     EXPECT_NE(end, std::string::npos);
     text.erase(at, text.find('\n', end) - at);
     const std::size_t list = text.find("#define FRAME_FIELDS");
