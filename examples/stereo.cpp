@@ -10,20 +10,24 @@ namespace {
 constexpr int kSize = 128;
 constexpr double kIpd = 64.0; // mm, as the volume is
 
-/// A framebuffer per eye, each a layer of one texture.
-std::array<GLuint, 2> eyeFramebuffers(const Host& host) {
+/// A layer per eye of one texture.
+struct Eyes {
     GLuint texture = 0;
-    host.GenTextures(1, &texture);
-    host.BindTexture(GL_TEXTURE_2D_ARRAY, texture);
+    std::array<GLuint, 2> framebuffers{}; // the application's: to clear and to read
+};
+
+Eyes makeEyes(const Host& host) {
+    Eyes eyes;
+    host.GenTextures(1, &eyes.texture);
+    host.BindTexture(GL_TEXTURE_2D_ARRAY, eyes.texture);
     host.TexStorage3D(GL_TEXTURE_2D_ARRAY, 1, GL_RGBA8, kSize, kSize, 2);
-    std::array<GLuint, 2> framebuffers{};
-    host.GenFramebuffers(2, framebuffers.data());
+    host.GenFramebuffers(2, eyes.framebuffers.data());
     for (int eye = 0; eye < 2; ++eye) {
-        host.BindFramebuffer(GL_FRAMEBUFFER, framebuffers[eye]);
-        host.FramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture, 0, eye);
-        host.clear(framebuffers[eye]);
+        host.BindFramebuffer(GL_FRAMEBUFFER, eyes.framebuffers[eye]);
+        host.FramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, eyes.texture, 0, eye);
+        host.clear(eyes.framebuffers[eye]);
     }
-    return framebuffers;
+    return eyes;
 }
 
 /// Where the red lies, in pixels to the right of the middle.
@@ -41,7 +45,7 @@ double centreOf(const Host::Pixels& pixels) {
 
 int main() {
     const Host host;
-    const std::array<GLuint, 2> framebuffers = eyeFramebuffers(host);
+    const Eyes target = makeEyes(host);
     const TransferFunction red{.name = "red",
                                .points = {{60.0, {1, 0, 0}, 0.0}, {100.0, {1, 0, 0}, 0.9}}};
 
@@ -56,16 +60,18 @@ int main() {
     const double distance = camera.distanceRadii * sphere.radiusMm;
     const View centre{viewFromModel(camera, sphere), symmetricFrustum(20.0, 1.0)};
     const std::array<View, 2> eyes = stereoViews(centre, kIpd, 2.0 * distance);
-    const ViewTarget targets[] = {{eyes[0], framebuffers[0], {0, 0, kSize, kSize}},
-                                  {eyes[1], framebuffers[1], {0, 0, kSize, kSize}}};
+    const Viewport whole{0, 0, kSize, kSize};
+    const ViewTarget targets[] = {
+        {.view = eyes[0], .viewport = whole, .layer = TargetLayer{target.texture, 0}},
+        {.view = eyes[1], .viewport = whole, .layer = TargetLayer{target.texture, 1}}};
     orExit(renderer.prepare(scene, plan, targets));
     orExit(renderer.draw(scene, plan, targets));
 
     // Nearer than where the eyes' windows meet, the ball lies to the right for the left eye.
     const double shift = kIpd / 2.0 * (1.0 / distance - 0.5 / distance);
     const double expected = shift / centre.frustum.right * kSize / 2.0;
-    const double left = centreOf(host.read(framebuffers[0], kSize, kSize));
-    const double right = centreOf(host.read(framebuffers[1], kSize, kSize));
+    const double left = centreOf(host.read(target.framebuffers[0], kSize, kSize));
+    const double right = centreOf(host.read(target.framebuffers[1], kSize, kSize));
     std::printf("left %.2f, right %.2f, expected %.2f pixels\n", left, right, expected);
     return std::abs(left - expected) < 0.5 && std::abs(right + expected) < 0.5 ? 0 : 1;
 }

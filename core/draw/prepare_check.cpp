@@ -56,6 +56,12 @@ Result<void> checkViews(std::span<const ViewTarget> views) {
         if (Result<void> ok = check(views[i].view); !ok) {
             return refused("view " + std::to_string(i) + ": " + ok.error().detail);
         }
+        const std::optional<TargetLayer>& to = views[i].layer;
+        if (to && (to->texture == 0 || to->layer < 0 || to->level < 0)) {
+            return refused(
+                "view " + std::to_string(i) +
+                ": its layer is none: give a texture's name, and layer and level from 0");
+        }
     }
     return {};
 }

@@ -11,7 +11,8 @@ namespace slabcast {
 /// what to do. Tested by: scene_gl_test.cpp
 Result<void> checkPlan(const FramePlan& plan, const Scene& scene);
 
-/// check() of every view that is not empty. Fails: InvalidArgument, naming the view by its index.
+/// check() of every view that is not empty, and whether its layer can be one. Fails:
+/// InvalidArgument, naming the view by its index. Tested by: scene_gl_test.cpp, views_gl_test.cpp
 Result<void> checkViews(std::span<const ViewTarget> views);
 
 } // namespace slabcast

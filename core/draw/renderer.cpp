@@ -65,6 +65,7 @@ struct Renderer::State {
     LayerCompositor compositor;
     SaturationMarks marks;
     gl::ColorTargets layer, counters;
+    gl::Framebuffer ofLayers; // of the host's textures, one at a time; made when first needed
     std::optional<GpuSkipBuilder> builder; // made when it is first needed
     bool created = false;                  // the objects that do not depend on a scene
     HostState hostState = HostState::Restore;
@@ -89,6 +90,10 @@ struct Renderer::State {
                  const gl::Program& program, const StackShape& shape, const PlaneRun& run) const;
     /// Marks what the layer has of saturated pixels in the depth of `marked`.
     void mark(const gl::ColorTargets& marked, const FramePlan& plan, glm::ivec2 size) const;
+    /// Makes it what is drawn into. Contract: leaveTarget() follows.
+    void useTarget(const ViewTarget& target) const;
+    /// No layer stays attached: the host may delete its texture.
+    static void leaveTarget(const ViewTarget& target);
     void drawDirectly(std::size_t view, const ViewTarget& target, const FramePlan& plan,
                       const gl::Program& program) const;
     void drawLayer(std::size_t view, const ViewTarget& target, const FramePlan& plan,
@@ -257,6 +262,10 @@ Result<void> Renderer::State::prepareViews(const Scene& scene, const FramePlan& 
         if (needsLayer(plan, target.encoding)) {
             layerSize = glm::max(layerSize, glm::ivec2(v.width, v.height));
         }
+        if (target.layer && !ofLayers) {
+            state.touch();
+            ofLayers = gl::Framebuffer::make("layers of the host's");
+        }
     }
     if (plan.tighten && longest > 0.0) {
         SLABCAST_EXPECTS(scene.skip().exists(), plan.tighten);
@@ -273,7 +282,7 @@ bool Renderer::State::servesView(const Scene& scene, const FramePlan& plan,
     const bool layered =
         !needsLayer(plan, target.encoding) ||
         layer.holds(v.width, v.height, glFormat(plan.target), plan.planesPerMark > 0);
-    return tightened && layered;
+    return tightened && layered && (!target.layer || ofLayers);
 }
 
 /// Only ever grows: views of different sizes share it without a new one in every frame.
@@ -308,16 +317,31 @@ void Renderer::State::mark(const gl::ColorTargets& marked, const FramePlan& plan
     marks.mark(layer.texture(0), marked.depth(), size, saturatedAlpha(plan));
 }
 
+void Renderer::State::useTarget(const ViewTarget& target) const {
+    const Viewport& v = target.viewport;
+    gl::BindFramebuffer(GL_FRAMEBUFFER, target.layer ? ofLayers.id() : target.framebuffer);
+    if (target.layer) {
+        gl::FramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, target.layer->texture,
+                                    target.layer->level, target.layer->layer);
+    }
+    gl::Viewport(v.x, v.y, v.width, v.height);
+}
+
+void Renderer::State::leaveTarget(const ViewTarget& target) {
+    if (target.layer) {
+        gl::FramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, 0, 0, 0);
+    }
+}
+
 void Renderer::State::drawDirectly(std::size_t view, const ViewTarget& target,
                                    const FramePlan& plan, const gl::Program& program) const {
-    const Viewport& v = target.viewport;
-    gl::BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-    gl::Viewport(v.x, v.y, v.width, v.height);
+    useTarget(target);
     const StackShape& shape = drawer.begin(view);
     PlaneRun run;
     for (PlaneRuns runs(plan.order, shape, 0); runs.next(run);) {
         drawer.draw(program, shape, run);
     }
+    leaveTarget(target);
 }
 
 void Renderer::State::drawLayer(std::size_t view, const ViewTarget& target, const FramePlan& plan,
@@ -347,9 +371,9 @@ void Renderer::State::drawLayer(std::size_t view, const ViewTarget& target, cons
         gl::Disable(GL_DEPTH_TEST);
     }
     blending.to(kOver);
-    gl::BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-    gl::Viewport(v.x, v.y, v.width, v.height);
+    useTarget(target);
     compositor.composite(layer.texture(0), v.x, v.y, conversionTo(plan.space, target.encoding));
+    leaveTarget(target);
 }
 
 Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
@@ -371,7 +395,8 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
     if (views.size() > state_->drawer.views() || !std::all_of(views.begin(), views.end(), served)) {
         return fail(ErrorCode::InvalidArgument,
                     "a view is larger or wider than those that were prepared, its target is "
-                    "encoded otherwise, or there are more: prepare() with these views first");
+                    "encoded otherwise or a layer, or there are more: prepare() with these views "
+                    "first");
     }
     for (std::size_t i = 0; i < views.size(); ++i) {
         const ViewTarget& target = views[i];
@@ -551,6 +576,7 @@ void Renderer::contextLost() {
     state_->marks.forget();
     state_->layer.forget();
     state_->counters.forget();
+    state_->ofLayers.forget();
     state_->programs.forget();
     state_->created = false;
 }

@@ -23,12 +23,22 @@ struct ActiveResources;
 /// encodes at every blend.
 enum class TargetEncoding : std::uint8_t { Encoded, Linear, SrgbFormat };
 
-/// One view's place in a framebuffer of the caller's. What is there stays, seen through the volume.
+/// One layer of a texture of the caller's, as headsets hand out their eyes. Of a 2D array or 3D
+/// texture, in a format that is drawn into. Only names it: draw() holds on to no texture.
+struct TargetLayer {
+    unsigned texture = 0; // GL name
+    int layer = 0;        // from 0
+    int level = 0;        // of its mipmaps
+};
+
+/// One view's place in a framebuffer of the caller's, or in a layer, without a framebuffer of the
+/// caller's. What is there stays, seen through the volume.
 struct ViewTarget {
     View view;
-    unsigned framebuffer = 0; // GL name
+    unsigned framebuffer = 0; // GL name; not read where there is a layer
     Viewport viewport;
     TargetEncoding encoding = TargetEncoding::Encoded;
+    std::optional<TargetLayer> layer;
 };
 
 /// Work of one pixel or of a frame. Fragments are those that are shaded: not those that a mark of
@@ -70,7 +80,7 @@ struct GpuMemory {
 
 /// Draws scenes. One GL context, one thread: every call needs the context current.
 /// prepare() may compile and upload, and so may take long; draw() only records GL commands and
-/// never waits. Tested by: renderer_gl_test.cpp, renderer_work_gl_test.cpp
+/// never waits. Tested by: renderer_gl_test.cpp, renderer_work_gl_test.cpp, views_gl_test.cpp
 class Renderer {
 public:
     /// Fails: ShaderCompile. Thread: the device's context is current.
@@ -109,11 +119,11 @@ public:
     /// layer of our own as large as the largest view, the boxes that planes are tightened around.
     /// Nothing is done for what is there already; textures that the plan does not use are released
     /// (all, where it draws nothing; while the scene is edited, what the next TF may need stays),
-    /// compiled shaders are kept. Of the views, sizes, encodings and frusta count, not where they
-    /// look. Accepts exactly what draw() can draw. Restores the GL state (gl::StateGuard). Fails:
-    /// InvalidArgument (a plan made for another look, or for other things than were provided since;
-    /// a view that check() refuses; textures to be made from texels that were let go),
-    /// DeviceOutOfMemory, VolumeTooLarge, ShaderCompile.
+    /// compiled shaders are kept. Of the views, sizes, encodings, frusta and whether they are
+    /// layers count, not which or where they look. Accepts exactly what draw() can draw. Restores
+    /// the GL state (gl::StateGuard). Fails: InvalidArgument (a plan made for another look, or for
+    /// other things than were provided since; a view that check() refuses; textures to be made from
+    /// texels that were let go), DeviceOutOfMemory, VolumeTooLarge, ShaderCompile.
     Result<void> prepare(const Scene& scene, const FramePlan& plan,
                          std::span<const ViewTarget> views);
 
@@ -123,7 +133,8 @@ public:
     /// termination, colour and opacity are off by at most what the termination opacity lacks of 1,
     /// in either order, beside the rounding of each plane's blending. Restores the GL state that
     /// gl::StateGuard documents. The last prepare() must have been for this scene, its look and
-    /// this plan, or one that uses the same textures. Views may look elsewhere than those prepared.
+    /// this plan, or one that uses the same textures. Views may look elsewhere than those prepared,
+    /// and be other layers: one costs two GL calls. Contract: a target's framebuffer is complete.
     /// Fails: InvalidArgument (scene or plan are others; a view is larger or wider than those
     /// prepared, or encoded otherwise, or one that check() refuses); then nothing was drawn.
     Result<void> draw(const Scene& scene, const FramePlan& plan, std::span<const ViewTarget> views);

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "core/gl/state_guard.h"
 #include "tests/support/render_support.h"
 
 namespace slabcast::test {
@@ -233,6 +235,103 @@ TEST_F(StereoTest, EachEyeIsItsMonoPictureBitForBit) {
                     << name(lattice) << ' ' << eye;
             }
         }
+    }
+}
+
+/// Two eyes as layers 2 and 0 of an array of three, of level 1.
+class ArrayTest : public StereoTest {
+protected:
+    static constexpr int kLevel = 1;
+
+    void SetUp() override {
+        StereoTest::SetUp();
+        texture_ = gl::Texture::make("host's array", GL_TEXTURE_2D_ARRAY);
+        reading_ = gl::Framebuffer::make("host's framebuffer");
+        gl::BindTexture(GL_TEXTURE_2D_ARRAY, texture_.id());
+        gl::TexStorage3D(GL_TEXTURE_2D_ARRAY, 2, GL_RGBA16F, 2 * kEye.x, 2 * kEye.y, 3);
+        clear();
+    }
+    void clear() const {
+        for (int layer = 0; layer < 3; ++layer) {
+            const glm::vec4 nothing(0.0F);
+            attach(layer);
+            gl::ClearBufferfv(GL_COLOR, 0, &nothing.x);
+        }
+    }
+    void attach(int layer) const {
+        gl::BindFramebuffer(GL_FRAMEBUFFER, reading_.id());
+        gl::FramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, texture_.id(), kLevel,
+                                    layer);
+    }
+    Picture read(int layer) const {
+        attach(layer);
+        gl::StateGuard::usePlainPacking();
+        Picture picture{kEye, std::vector<glm::vec4>(std::size_t(kEye.x) * kEye.y)};
+        gl::ReadPixels(0, 0, kEye.x, kEye.y, GL_RGBA, GL_FLOAT, picture.pixels.data());
+        return picture;
+    }
+    ViewTarget layerOf(const View& view, int layer) const {
+        return {.view = view,
+                .viewport = {0, 0, kEye.x, kEye.y},
+                .encoding = TargetEncoding::Encoded,
+                .layer = TargetLayer{texture_.id(), layer, kLevel}};
+    }
+
+    gl::Texture texture_;
+    gl::Framebuffer reading_;
+};
+
+TEST_F(ArrayTest, EachLayerIsItsMonoPictureBitForBit) {
+    const Scene scene = wavyScene(31, 0.5);
+    const std::array<View, 2> eyes = eyesOf(scene);
+    for (const BlendOrder order : {BlendOrder::BackToFront, BlendOrder::FrontToBack}) {
+        clear();
+        Settings settings = segments(9, SegmentForm::Loop);
+        settings.order = order;
+        const FramePlan plan = decide(scene, settings);
+        const ViewTarget targets[] = {layerOf(eyes[0], 2), layerOf(eyes[1], 0)};
+        drawEyes(scene, plan, targets);
+        EXPECT_EQ(differingPixels(read(2), draw(scene, plan, eyes[0], kEye)), 0) << name(order);
+        EXPECT_EQ(differingPixels(read(0), draw(scene, plan, eyes[1], kEye)), 0) << name(order);
+        EXPECT_EQ(visiblePixels(read(1)), 0) << "another layer than those";
+        EXPECT_GT(visiblePixels(read(0)), 1000);
+    }
+}
+
+// A texture is gone when its name is deleted only where no framebuffer has it attached.
+TEST_F(ArrayTest, DrawingHoldsOnToNoTexture) {
+    const Scene scene = wavyScene(32);
+    const FramePlan plan = decide(scene, segments(9, SegmentForm::Loop));
+    const ViewTarget target = layerOf(eyesOf(scene)[0], 1);
+    static int attached;
+    static decltype(gl::FramebufferTextureLayer) attachLayer;
+    ASSERT_TRUE(renderer().prepare(scene, plan, {&target, 1}).has_value());
+    attached = 0;
+    attachLayer =
+        std::exchange(gl::FramebufferTextureLayer,
+                      [](GLenum to, GLenum point, GLuint texture, GLint level, GLint layer) {
+                          attached += texture != 0 ? 1 : -1;
+                          attachLayer(to, point, texture, level, layer);
+                      });
+    const bool drawn = renderer().draw(scene, plan, {&target, 1}).has_value();
+    gl::FramebufferTextureLayer = attachLayer;
+    EXPECT_TRUE(drawn);
+    EXPECT_EQ(attached, 0);
+    EXPECT_GT(visiblePixels(read(1)), 1000);
+}
+
+TEST_F(ArrayTest, WhatIsNoLayerIsRefused) {
+    const Scene scene = wavyScene(33);
+    const FramePlan plan = decide(scene, segments(9, SegmentForm::Loop));
+    for (const TargetLayer& none : {TargetLayer{0, 0, 0}, TargetLayer{texture_.id(), -1, 0},
+                                    TargetLayer{texture_.id(), 0, -1}}) {
+        ViewTarget target = layerOf(eyesOf(scene)[0], 0);
+        target.layer = none;
+        const Result<void> prepared = renderer().prepare(scene, plan, {&target, 1});
+        ASSERT_FALSE(prepared.has_value());
+        EXPECT_EQ(prepared.error().code, ErrorCode::InvalidArgument);
+        EXPECT_NE(prepared.error().detail.find("view 0: its layer"), std::string::npos)
+            << prepared.error().detail;
     }
 }
 
