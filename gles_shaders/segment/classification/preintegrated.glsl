@@ -1,6 +1,7 @@
 // Pre-integrated classification: a layer is the interval between two samples, along which the field
 // is taken to run linearly. L layers take L + 1 samples. See core/transfer/preintegrated.h.
 #include FIELD_FILE
+#include "segment/classification/one_material.glsl"
 #include MATERIAL_OF_INTERVAL_FILE
 const int kSharedEnds = 1; // samples that neighbouring layers have in common
 
@@ -32,7 +33,7 @@ vec4 classify(vec3 uvw, Ray ray, int i) {
     float front = endTexel;
     endTexel = texelAt(ray, i + 1);
     sampledEnd = i + 1;
-    vec4 mean = meanBetween(front, endTexel);
+    vec4 mean = meanBetween(front, endTexel, kLabel, kSide);
     float alpha = opacityOfDepth(mean.a * (lengthInside(ray, i) * tableMap.z));
     if (alpha == 0.0) {
         return vec4(0.0);

@@ -1,4 +1,5 @@
-// Colour and extinction of a value: from the transfer function's table.
+// Colour and extinction of a value: from the transfer function's table, one for all labels and
+// sides.
 precision highp sampler2D;
 uniform sampler2D transferTable;
 
@@ -6,7 +7,7 @@ uniform sampler2D transferTable;
 /// both texels must be exactly zero between them. Colours are mediump: their rounding stays below
 /// half an 8-bit step (`slabcast stability`, half precision); a device that does round them
 /// promises that skipping changes nothing only to that rounding.
-vec4 materialOf(float value) {
+vec4 materialOf(float value, int label, int side) {
     precise float at = clamp((value - tableMap.y) * tableMap.x, 0.0, tableMap.w);
     int texel = int(at);
     vec4 low = texelFetch(transferTable, ivec2(texel, 0), 0);

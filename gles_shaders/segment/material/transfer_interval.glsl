@@ -4,7 +4,7 @@ precision highp sampler2D;
 uniform sampler2D transferTable;
 
 /// Mean of an interval by the table, and by its ends where the TF is constant beyond them.
-vec4 meanBetween(float front, float back) {
+vec4 meanBetween(float front, float back, int label, int side) {
     float last = tableMap.w;
     vec2 place = clamp(vec2(front, back), 0.0, last);
     vec4 within = textureLod(transferTable, (place + 0.5) / (last + 1.0), 0.0);
