@@ -1,6 +1,7 @@
 #include "core/skip/gpu/skip_texture.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <limits>
 #include <span>
