@@ -36,8 +36,11 @@ bool met(const Requirement& requirement, const ShaderVariant& variant) {
 /// The members of the uniform block, on one line.
 std::string frameFields() {
     const auto member = [](const char* type, const char* name, int number) {
-        return std::string(type) + " " + name +
-               (number > 1 ? "[" + std::to_string(number) + "]; " : "; ");
+        std::string declaration = std::string(type) + " " + name;
+        if (number > 1) {
+            declaration.append("[").append(std::to_string(number)).append("]");
+        }
+        return declaration + "; ";
     };
     std::string text;
 #define SLABCAST_MEMBER(type, name, number) text += member(#type, #name, number);

@@ -210,7 +210,7 @@ std::vector<PhantomInfo> phantomList() {
 Result<Volume> makePhantom(std::string_view spec) {
     if (spec.substr(0, kPrefix.size()) != kPrefix) {
         return fail(ErrorCode::InvalidArgument,
-                    "'" + std::string(spec) + "' is no phantom; write phantom:NAME:SIZE");
+                    std::string("'").append(spec) + "' is no phantom; write phantom:NAME:SIZE");
     }
     spec.remove_prefix(kPrefix.size());
     const std::size_t colon = spec.find(':');

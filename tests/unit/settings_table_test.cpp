@@ -57,8 +57,8 @@ TEST(SettingsTable, everyMemberOfTheSettingsIsInIt) {
                  planes, layersPerPlane, form, tighten, target, space, shaded, order, termination] =
         Settings{};
     constexpr std::size_t kMembers = 17;
-    const auto& [structure, edge, bits, partitions, minimum, range, level, traversal, budget] =
-        skipOptions;
+    [[maybe_unused]] const auto& [structure, edge, bits, partitions, minimum, range, level,
+                                  traversal, budget] = skipOptions;
     constexpr std::size_t kSkipMembers = 9;
     // Of the options the structure is the setting skip's, and they themselves are no setting.
     EXPECT_EQ(settingsTable().size(), kMembers - 1 + kSkipMembers - 1);
@@ -225,7 +225,8 @@ std::string page() {
         "# Settings\n\n"
         "What a picture depends on beside volume, transfer function and view. Each is an option "
         "of the command line (`--layers 128`), a member of `slabcast::Settings`, and an entry of "
-        "`settings` in `stats.json`, there in lowerCamel: `layersPerPlane`. This page is made from "
+        "`settings` in `stats.json`, there in snake_case: `layers_per_plane`. This page is made "
+        "from "
         "the table in `core/plan/settings_table.cpp`, and a test holds it to that.\n";
     std::string group;
     for (const Setting& setting : settingsTable()) {
