@@ -16,19 +16,19 @@ struct CsvColumn {
 };
 
 /// The times and counters of rows that have them as `frameMs` and `counters`.
-inline constexpr CsvColumn kMeasuredColumns[] = {{"frame_ms_median", "/frameMs/median"},
-                                                 {"frame_ms_min", "/frameMs/min"},
-                                                 {"frame_ms_max", "/frameMs/max"},
-                                                 {"frame_ms_p10", "/frameMs/p10"},
-                                                 {"frame_ms_p90", "/frameMs/p90"},
-                                                 {"frame_ms_n", "/frameMs/n"},
+inline constexpr CsvColumn kMeasuredColumns[] = {{"frame_ms_median", "/frame_ms/median"},
+                                                 {"frame_ms_min", "/frame_ms/min"},
+                                                 {"frame_ms_max", "/frame_ms/max"},
+                                                 {"frame_ms_p10", "/frame_ms/p10"},
+                                                 {"frame_ms_p90", "/frame_ms/p90"},
+                                                 {"frame_ms_n", "/frame_ms/n"},
                                                  {"fragments", "/counters/fragments"},
-                                                 {"layers_evaluated", "/counters/layersEvaluated"},
-                                                 {"layers_skipped", "/counters/layersSkipped"},
-                                                 {"volume_fetches", "/counters/volumeFetches"},
-                                                 {"skip_fetches", "/counters/skipFetches"},
+                                                 {"layers_evaluated", "/counters/layers_evaluated"},
+                                                 {"layers_skipped", "/counters/layers_skipped"},
+                                                 {"volume_fetches", "/counters/volume_fetches"},
+                                                 {"skip_fetches", "/counters/skip_fetches"},
                                                  {"stretches", "/counters/stretches"},
-                                                 {"blocks_visited", "/counters/blocksVisited"}};
+                                                 {"blocks_visited", "/counters/blocks_visited"}};
 
 /// One table's columns from those of its parts.
 std::vector<CsvColumn> columnsOf(std::initializer_list<std::span<const CsvColumn>> parts);

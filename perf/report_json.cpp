@@ -1,6 +1,6 @@
 #include "perf/report_json.h"
 
-#include <cctype>
+#include <algorithm>
 #include <ctime>
 
 #include <nlohmann/json.hpp>
@@ -12,17 +12,9 @@ namespace slabcast {
 using nlohmann::json;
 
 std::string keyOf(std::string_view words) {
-    std::string key;
-    bool begins = false; // a word, other than the first
-    for (const char letter : words) {
-        if (letter == ' ' || letter == '-') {
-            begins = true;
-        } else {
-            const int upper = std::toupper(static_cast<unsigned char>(letter));
-            key += begins ? static_cast<char>(upper) : letter;
-            begins = false;
-        }
-    }
+    std::string key(words);
+    std::replace_if(
+        key.begin(), key.end(), [](char letter) { return letter == ' ' || letter == '-'; }, '_');
     return key;
 }
 
@@ -38,7 +30,7 @@ json toJson(const VolumeInfo& info) {
             {"dims", {info.dims.x, info.dims.y, info.dims.z}},
             {"type", name(info.type)},
             {"unit", info.unit},
-            {"spacingMm", {info.spacingMm.x, info.spacingMm.y, info.spacingMm.z}},
+            {"spacing_mm", {info.spacingMm.x, info.spacingMm.y, info.spacingMm.z}},
             {"bytes", info.bytes}};
 }
 
@@ -53,19 +45,19 @@ json toJson(const FramePlan& plan) {
     }
     const bool terminates = plan.variant.terminates || plan.planesPerMark > 0;
     return {{"planes", plan.planes},
-            {"layersPerPlane", plan.layersPerPlane},
+            {"layers_per_plane", plan.layersPerPlane},
             {"layers", plan.lattice.total},
-            {"layerSpacingMm", plan.lattice.spacingMm},
+            {"layer_spacing_mm", plan.lattice.spacingMm},
             {"lattice", name(plan.lattice.kind)},
             {"jitter", plan.lattice.jittered},
             {"variant", name(plan.variant)},
             {"tighten", plan.tighten},
             {"termination", terminates ? json(plan.terminationAlpha) : json("off")},
             {"order", name(plan.order)},
-            {"planesPerMark", plan.planesPerMark},
+            {"planes_per_mark", plan.planesPerMark},
             {"target", name(plan.target)},
             {"space", name(plan.space)},
-            {"drawsNothing", plan.drawsNothing},
+            {"draws_nothing", plan.drawsNothing},
             {"reasons", std::move(reasons)}};
 }
 
@@ -74,7 +66,7 @@ json toJson(const BuiltSkip& skip) {
         return nullptr;
     }
     const SkipOptions& o = skip.options;
-    json parameters = {{"blockEdge", o.blockEdgeVoxels}};
+    json parameters = {{"block_edge", o.blockEdgeVoxels}};
     const bool isBitfield = o.structure == SkipStructure::BitfieldOctree;
     const bool isPartitioned = o.structure == SkipStructure::Partitioned;
     if (isBitfield) {
@@ -84,20 +76,20 @@ json toJson(const BuiltSkip& skip) {
         parameters["partitions"] = o.partitions;
     }
     if (isBitfield || isPartitioned) {
-        parameters["separateMinimum"] = o.separateMinimum;
-        parameters["valueRange"] = o.valueRange ? json(*o.valueRange) : json();
+        parameters["separate_minimum"] = o.separateMinimum;
+        parameters["value_range"] = o.valueRange ? json(*o.valueRange) : json();
     }
     if (isOctree(o.structure)) {
-        parameters["initialLevel"] = o.initialLevel;
+        parameters["initial_level"] = o.initialLevel;
         parameters["traversal"] = name(o.traversal);
     }
     return {{"structure", name(o.structure)},
             {"parameters", std::move(parameters)},
             {"builder", skip.onGpu ? "gpu" : "cpu"},
-            {"buildMs", skip.buildMs},
-            {"gpuBytes", gpuBytes(skip)},
-            {"hostBytes", hostBytes(skip)},
-            {"occupiedFraction", skip.occupiedFraction}};
+            {"build_ms", skip.buildMs},
+            {"gpu_bytes", gpuBytes(skip)},
+            {"host_bytes", hostBytes(skip)},
+            {"occupied_fraction", skip.occupiedFraction}};
 }
 
 json toJson(const FrameTimes& t) {
@@ -112,11 +104,13 @@ json toJson(const Result<WorkCounters>& counters) {
     if (!counters) {
         return nullptr;
     }
-    return {
-        {"fragments", counters->fragments},         {"layersEvaluated", counters->layersEvaluated},
-        {"layersSkipped", counters->layersSkipped}, {"volumeFetches", counters->volumeFetches},
-        {"skipFetches", counters->skipFetches},     {"stretches", counters->stretches},
-        {"blocksVisited", counters->blocksVisited}};
+    return {{"fragments", counters->fragments},
+            {"layers_evaluated", counters->layersEvaluated},
+            {"layers_skipped", counters->layersSkipped},
+            {"volume_fetches", counters->volumeFetches},
+            {"skip_fetches", counters->skipFetches},
+            {"stretches", counters->stretches},
+            {"blocks_visited", counters->blocksVisited}};
 }
 
 json reportHeader(const RunInfo& run, const gl::Caps& caps) {

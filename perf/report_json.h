@@ -15,8 +15,8 @@ namespace slabcast {
 
 class Stage;
 
-/// The key of what words name, lowerCamel as all keys are: of "early exit" or "early-exit"
-/// earlyExit. Tested by: settings_json_test.cpp
+/// The key of what words name, snake_case as all keys are: of "early exit" or "early-exit"
+/// early_exit. Tested by: settings_json_test.cpp
 std::string keyOf(std::string_view words);
 
 // JSON fragments that reports share. Keys are stable: people plot them.

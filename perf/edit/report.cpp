@@ -20,54 +20,54 @@ constexpr CsvColumn kColumns[] = {{"frame", "/frame"},
                                   {"edit", "/edit"},
                                   {"progress", "/progress"},
                                   {"structure", "/structure"},
-                                  {"frame_ms", "/frameMs"},
-                                  {"edit_ms", "/parts/editMs"},
-                                  {"work_ms", "/parts/workMs"},
-                                  {"prepare_ms", "/parts/prepareMs"},
-                                  {"draw_ms", "/parts/drawMs"},
-                                  {"octree_ms", "/octreeMs"},
-                                  {"octree_worst_ms", "/octreeWorstMs"},
-                                  {"over_octree", "/overOctree"},
-                                  {"naive_ms", "/naiveMs"},
+                                  {"frame_ms", "/frame_ms"},
+                                  {"edit_ms", "/parts/edit_ms"},
+                                  {"work_ms", "/parts/work_ms"},
+                                  {"prepare_ms", "/parts/prepare_ms"},
+                                  {"draw_ms", "/parts/draw_ms"},
+                                  {"octree_ms", "/octree_ms"},
+                                  {"octree_worst_ms", "/octree_worst_ms"},
+                                  {"over_octree", "/over_octree"},
+                                  {"naive_ms", "/naive_ms"},
                                   {"equal", "/equal"},
                                   {"fragments", "/counters/fragments"},
-                                  {"layers_evaluated", "/counters/layersEvaluated"},
-                                  {"layers_skipped", "/counters/layersSkipped"},
-                                  {"volume_fetches", "/counters/volumeFetches"},
-                                  {"skip_fetches", "/counters/skipFetches"},
+                                  {"layers_evaluated", "/counters/layers_evaluated"},
+                                  {"layers_skipped", "/counters/layers_skipped"},
+                                  {"volume_fetches", "/counters/volume_fetches"},
+                                  {"skip_fetches", "/counters/skip_fetches"},
                                   {"stretches", "/counters/stretches"},
-                                  {"blocks_visited", "/counters/blocksVisited"}};
+                                  {"blocks_visited", "/counters/blocks_visited"}};
 
 json conditionsOf(const Stage& stage, const EditDesc& desc, const FramePlan& plan) {
     const StageDesc& picture = stage.desc();
     const OrbitCamera& c = picture.camera;
     return {{"size", {picture.size.x, picture.size.y}},
             {"camera", {c.azimuthDegrees, c.elevationDegrees, c.distanceRadii}},
-            {"turnDegrees", desc.turnDegrees},
+            {"turn_degrees", desc.turnDegrees},
             {"start", desc.script.start.name},
             {"edits", desc.origin},
             {"classification", name(desc.settings.classification)},
             {"planes", plan.planes},
-            {"layersPerPlane", plan.layersPerPlane},
-            {"workBudgetMs", desc.workBudgetMs},
-            {"quietFrames", desc.live.quietFrames},
-            {"octreeFrames", desc.octreeFrames},
+            {"layers_per_plane", plan.layersPerPlane},
+            {"work_budget_ms", desc.workBudgetMs},
+            {"quiet_frames", desc.live.quietFrames},
+            {"octree_frames", desc.octreeFrames},
             {"replays", desc.replays},
             {"verified", desc.verify}};
 }
 
 json buildOf(const EditBuild& build) {
     return {{"structure", name(build.structure)},
-            {"blockEdge", build.blockEdge},
-            {"gpuBytes", build.gpuBytes}};
+            {"block_edge", build.blockEdge},
+            {"gpu_bytes", build.gpuBytes}};
 }
 
 json buildsOf(const EditBuilds& builds) {
-    json result = {{"always", buildOf(builds.always)}, {"naiveMs", builds.naiveMs}};
+    json result = {{"always", buildOf(builds.always)}, {"naive_ms", builds.naiveMs}};
     result["always"]["ms"] = builds.always.ms;
     if (builds.settled) {
         result["settled"] = buildOf(*builds.settled);
-        result["settled"]["lastMs"] = builds.settled->ms > 0.0 ? json(builds.settled->ms) : json();
+        result["settled"]["last_ms"] = builds.settled->ms > 0.0 ? json(builds.settled->ms) : json();
     }
     return result;
 }
@@ -78,16 +78,16 @@ json rowOf(const EditRow& row, std::size_t index) {
                    {"edit", row.edited},
                    {"progress", name(row.progress)},
                    {"structure", row.structure},
-                   {"frameMs", row.frameMs},
+                   {"frame_ms", row.frameMs},
                    {"parts",
-                    {{"editMs", row.editMs},
-                     {"workMs", row.workMs},
-                     {"prepareMs", row.prepareMs},
-                     {"drawMs", row.drawMs}}},
-                   {"octreeMs", row.octreeMs},
-                   {"octreeWorstMs", row.octreeWorstMs},
-                   {"overOctree", row.frameMs / row.octreeMs},
-                   {"naiveMs", row.naiveMs},
+                    {{"edit_ms", row.editMs},
+                     {"work_ms", row.workMs},
+                     {"prepare_ms", row.prepareMs},
+                     {"draw_ms", row.drawMs}}},
+                   {"octree_ms", row.octreeMs},
+                   {"octree_worst_ms", row.octreeWorstMs},
+                   {"over_octree", row.frameMs / row.octreeMs},
+                   {"naive_ms", row.naiveMs},
                    {"counters", toJson(row.counters)}};
     if (row.equal) {
         result["equal"] = *row.equal;
@@ -96,32 +96,32 @@ json rowOf(const EditRow& row, std::size_t index) {
 }
 
 json summaryJson(const EditSummary& s, const EditDesc& desc, double worstOfReplays) {
-    json summary = {{"comparedWith", name(desc.live.always.structure)},
-                    {"worstOverOctreeFrame", s.overOctree.max},
-                    {"overOctreeFrame", toJson(s.overOctree)},
-                    {"worstAddedOverOctreeFrame", s.worstAdded},
-                    {"worstOctreeFrameOverMedian", s.worstOctreeSpread},
-                    {"worstOfSingleReplays", worstOfReplays},
-                    {"framesOverOctreeBudget", s.framesOverOctreeBudget},
+    json summary = {{"compared_with", name(desc.live.always.structure)},
+                    {"worst_over_octree_frame", s.overOctree.max},
+                    {"over_octree_frame", toJson(s.overOctree)},
+                    {"worst_added_over_octree_frame", s.worstAdded},
+                    {"worst_octree_frame_over_median", s.worstOctreeSpread},
+                    {"worst_of_single_replays", worstOfReplays},
+                    {"frames_over_octree_budget", s.framesOverOctreeBudget},
                     {"frames", s.frames},
                     {"edits", s.edits},
-                    {"budgetMs", s.budgetMs},
-                    {"budgetGiven", desc.budgetMs.has_value()},
-                    {"framesOverBudget", s.framesOverBudget},
-                    {"frameMs", toJson(s.frameMs)},
-                    {"editFrameMs", toJson(s.editFrameMs)},
-                    {"editMs", toJson(s.editMs)},
-                    {"octreeFrameMs", toJson(s.octreeMs)},
+                    {"budget_ms", s.budgetMs},
+                    {"budget_given", desc.budgetMs.has_value()},
+                    {"frames_over_budget", s.framesOverBudget},
+                    {"frame_ms", toJson(s.frameMs)},
+                    {"edit_frame_ms", toJson(s.editFrameMs)},
+                    {"edit_ms", toJson(s.editMs)},
+                    {"octree_frame_ms", toJson(s.octreeMs)},
                     {"naive",
-                     {{"frameMs", toJson(s.naiveMs)},
-                      {"editFrameMs", toJson(s.naiveEditFrameMs)},
-                      {"worstOverOctreeFrame", s.worstNaive},
-                      {"framesOverBudget", s.naiveFramesOverBudget}}},
-                    {"framesByStructure", s.framesByStructure},
-                    {"handOvers", s.handOvers}};
+                     {{"frame_ms", toJson(s.naiveMs)},
+                      {"edit_frame_ms", toJson(s.naiveEditFrameMs)},
+                      {"worst_over_octree_frame", s.worstNaive},
+                      {"frames_over_budget", s.naiveFramesOverBudget}}},
+                    {"frames_by_structure", s.framesByStructure},
+                    {"hand_overs", s.handOvers}};
     if (desc.verify) {
-        summary["framesEqual"] = s.framesEqual;
-        summary["framesToCorrect"] = s.framesToCorrect ? json(*s.framesToCorrect) : json();
+        summary["frames_equal"] = s.framesEqual;
+        summary["frames_to_correct"] = s.framesToCorrect ? json(*s.framesToCorrect) : json();
     }
     return summary;
 }

@@ -31,14 +31,14 @@ constexpr CsvColumn kColumns[] = {{"id", "/id"},
                                   {"termination", "/termination"},
                                   {"jitter", "/jitter"},
                                   {"planes", "/plan/planes"},
-                                  {"layersPerPlane", "/plan/layersPerPlane"},
-                                  {"totalLayers", "/plan/layers"},
+                                  {"layers_per_plane", "/plan/layers_per_plane"},
+                                  {"total_layers", "/plan/layers"},
                                   {"variant", "/plan/variant"},
                                   {"rmse", "/error/total/rmse"},
                                   {"psnr", "/error/total/psnr"},
                                   {"max", "/error/total/max"},
-                                  {"meanDeltaE", "/error/total/meanDeltaE"},
-                                  {"p999DeltaE", "/error/total/p999DeltaE"},
+                                  {"mean_delta_e", "/error/total/mean_delta_e"},
+                                  {"p999_delta_e", "/error/total/p999_delta_e"},
                                   {"sampling_rmse", "/error/sampling/rmse"},
                                   {"table_rmse", "/error/table/rmse"},
                                   {"gpu_rmse", "/error/gpu/rmse"},
@@ -55,10 +55,10 @@ json referenceKey(const Stage& stage, const RunInfo& run) {
     return {{"commit", run.commit},
             {"voxels", fingerprint(stage.values().data)},
             {"placement", placementKey(scene.geometry())},
-            {"transferFunction", transferKey(scene.look().tf)},
+            {"transfer_function", transferKey(scene.look().tf)},
             {"space", name(scene.provided()->space)},
             {"camera", toJson(o.camera)},
-            {"fovDegrees", o.fovDegrees},
+            {"fov_degrees", o.fovDegrees},
             {"size", {o.size.x, o.size.y}},
             {"tolerance", kReferenceTolerance}};
 }
@@ -72,7 +72,7 @@ json rowsKey(const Stage& stage, const ErrorDesc& desc, json key) {
                 {"lattice", name(s.lattice)},
                 {"form", get(s, "form")},
                 {"skip", get(s, "skip")},
-                {"skipBlock", o.settings.skipOptions.blockEdgeVoxels},
+                {"skip_block", o.settings.skipOptions.blockEdgeVoxels},
                 {"tighten", s.tighten},
                 {"quick", desc.quick},
                 {"frames", desc.frames}});
@@ -84,17 +84,17 @@ json conditions(const Stage& stage, const ErrorDesc& desc) {
     const Settings& s = o.settings;
     return {{"size", {o.size.x, o.size.y}},
             {"camera", toJson(o.camera)},
-            {"fovDegrees", o.fovDegrees},
-            {"transferFunction", stage.scene().look().tf.name},
+            {"fov_degrees", o.fovDegrees},
+            {"transfer_function", stage.scene().look().tf.name},
             {"space", name(s.space)},
             {"lattice", name(s.lattice)},
             {"form", get(s, "form")},
             {"skip", get(s, "skip")},
             {"tighten", s.tighten},
-            {"texelFormat", name(stage.scene().texels().format)},
-            {"quantisationError", stage.scene().texels().maxQuantisationError},
-            {"smallestVoxelEdgeMm", stage.scene().facts().smallestVoxelEdgeMm},
-            {"framesPerRowAtMost", desc.frames},
+            {"texel_format", name(stage.scene().texels().format)},
+            {"quantisation_error", stage.scene().texels().maxQuantisationError},
+            {"smallest_voxel_edge_mm", stage.scene().facts().smallestVoxelEdgeMm},
+            {"frames_per_row_at_most", desc.frames},
             {"quick", desc.quick}};
 }
 
@@ -115,14 +115,14 @@ Result<void> makeReference(const Stage& stage, ErrorStore& store, ReportFolder& 
 }
 
 std::optional<double> timeOf(const json& row) {
-    return row.at("frameMs").at("median").get<double>();
+    return row.at("frame_ms").at("median").get<double>();
 }
 
 std::optional<double> fetchesOf(const json& row) {
     const json& counters = row.at("counters");
     return counters.is_null() ? std::nullopt
-                              : std::optional(counters.at("volumeFetches").get<double>() +
-                                              counters.at("skipFetches").get<double>());
+                              : std::optional(counters.at("volume_fetches").get<double>() +
+                                              counters.at("skip_fetches").get<double>());
 }
 
 /// What an error table keeps of the rows.
@@ -175,7 +175,7 @@ Result<std::vector<MeasuredError>> measureErrors(Stage& stage, const ErrorDesc& 
     json report = reportHeader(run, stage);
     const glm::ivec2 size = stage.desc().size;
     report.update({{"started", started},
-                   {"leftOut", std::move(leftOut)},
+                   {"left_out", std::move(leftOut)},
                    {"conditions", conditions(stage, desc)},
                    {"axes", toJson(desc.axes)},
                    {"reference",
@@ -184,7 +184,7 @@ Result<std::vector<MeasuredError>> measureErrors(Stage& stage, const ErrorDesc& 
                      {"size", {size.x, size.y}},
                      {"picture", kReferencePicture}}},
                    {"front", frontOf(*rows, timeOf)},
-                   {"frontByFetches", frontOf(*rows, fetchesOf)},
+                   {"front_by_fetches", frontOf(*rows, fetchesOf)},
                    {"rows", *rows}});
     return folder
         .write("error.csv", csvOf(*rows, columnsOf({kColumns, kMeasuredColumns, kLastColumns})))

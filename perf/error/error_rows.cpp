@@ -148,7 +148,7 @@ Result<json> ErrorRows::measureRow(const Sampling& sampling, const FramePlan& pl
                 {"ratio", ratioName(plan)},
                 {"plan", planJson(plan)},
                 {"error", std::move(error)},
-                {"frameMs", toJson(*times)},
+                {"frame_ms", toJson(*times)},
                 {"counters", countersOf(plan)},
                 {"command", desc_.commandOf ? desc_.commandOf(sampling, plan, id + ".png") : ""},
                 {"pictures", std::move(*pictures)}});
@@ -216,7 +216,7 @@ Result<json> ErrorRows::savePictures(const std::string& id,
     }
     return json{{"thumbnail", thumbnailFile},
                 {"difference", differenceFile},
-                {"differenceFactor", apart.factor}};
+                {"difference_factor", apart.factor}};
 }
 
 } // namespace

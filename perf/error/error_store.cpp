@@ -50,7 +50,7 @@ bool areCountersOrNull(const json& value) {
         return value.contains(key) && value.at(key).is_number();
     };
     return value.is_null() ||
-           (value.is_object() && counts("volumeFetches") && counts("skipFetches"));
+           (value.is_object() && counts("volume_fetches") && counts("skip_fetches"));
 }
 
 constexpr Member kMembers[] = {{"/id", isText},
@@ -65,7 +65,7 @@ constexpr Member kMembers[] = {{"/id", isText},
                                {"/error/sampling", isErrorOrNull},
                                {"/error/table", isErrorOrNull},
                                {"/error/gpu", isErrorOrNull},
-                               {"/frameMs/median", isNumber},
+                               {"/frame_ms/median", isNumber},
                                {"/counters", areCountersOrNull},
                                {"/pictures/thumbnail", isText},
                                {"/pictures/difference", isText}};

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr double kMost = 1e300;
 
 /// Reads members of one row; the first that is missing or of another kind is what is wrong.
@@ -83,7 +83,7 @@ json rowOf(const MeasuredError& m) {
                 {"space", name(m.scene.space)},
                 {"size", {m.size.x, m.size.y}},
                 {"rmse", m.rmse},
-                {"msPerMegapixel", m.msPerMegapixel},
+                {"ms_per_megapixel", m.msPerMegapixel},
                 {"commit", m.commit}});
     return row;
 }
@@ -102,7 +102,7 @@ MeasuredError measuredIn(RowReader& row) {
                      .termination = row.orOff("termination", 0.0, 1.0),
                      .jitter = row.flag("jitter")},
         .rmse = row.number("rmse", 0.0, kMost),
-        .msPerMegapixel = row.number("msPerMegapixel", 0.0, kMost),
+        .msPerMegapixel = row.number("ms_per_megapixel", 0.0, kMost),
         .commit = row.text("commit")};
 }
 

@@ -142,8 +142,8 @@ nlohmann::json toJson(const PictureDifference& d) {
     return {{"rmse", d.rmse},
             {"psnr", std::isfinite(d.psnr) ? nlohmann::json(d.psnr) : nlohmann::json()},
             {"max", d.max},
-            {"meanDeltaE", d.meanDeltaE},
-            {"p999DeltaE", d.p999DeltaE}};
+            {"mean_delta_e", d.meanDeltaE},
+            {"p999_delta_e", d.p999DeltaE}};
 }
 
 } // namespace slabcast

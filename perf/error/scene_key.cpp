@@ -27,7 +27,7 @@ json placementKey(const VolumeGeometry& geometry) {
         }
     }
     const glm::ivec3 dims = geometry.dims;
-    return {{"dims", {dims.x, dims.y, dims.z}}, {"modelFromUvw", std::move(matrix)}};
+    return {{"dims", {dims.x, dims.y, dims.z}}, {"model_from_uvw", std::move(matrix)}};
 }
 
 json transferKey(const TransferFunction& tf) {
@@ -35,7 +35,7 @@ json transferKey(const TransferFunction& tf) {
     for (const TransferPoint& p : tf.points) {
         points.push_back({p.value, p.color.x, p.color.y, p.color.z, p.opacity});
     }
-    return {{"opacityUnitMm", tf.opacityUnitMm}, {"points", std::move(points)}};
+    return {{"opacity_unit_mm", tf.opacityUnitMm}, {"points", std::move(points)}};
 }
 
 json statisticsKey(const VolumeStatistics& s) {

@@ -73,15 +73,15 @@ std::string frameReport(Stage& stage, const FramePlan& plan, const Settings& set
                    {"plan", toJson(plan)},
                    {"settings", toJson(settings)},
                    {"skip", std::move(skip)},
-                   {"frameMs", toJson(summarise(findings.frameMs))},
+                   {"frame_ms", toJson(summarise(findings.frameMs))},
                    {"counters", toJson(stage.countWork(plan))},
-                   {"compileMs", stage.renderer().compileMs(plan.variant)},
-                   {"quantisationError", stage.scene().texels().maxQuantisationError},
+                   {"compile_ms", stage.renderer().compileMs(plan.variant)},
+                   {"quantisation_error", stage.scene().texels().maxQuantisationError},
                    {"memory",
-                    {{"hostPeakBytes", run.peakHostBytes ? run.peakHostBytes() : 0},
-                     {"gpuVolumeBytes", gpu.volumeBytes},
-                     {"gpuSkipBytes", gpu.skipBytes},
-                     {"gpuOtherBytes", gpu.otherBytes}}}};
+                    {{"host_peak_bytes", run.peakHostBytes ? run.peakHostBytes() : 0},
+                     {"gpu_volume_bytes", gpu.volumeBytes},
+                     {"gpu_skip_bytes", gpu.skipBytes},
+                     {"gpu_other_bytes", gpu.otherBytes}}}};
     if (findings.error) {
         report["error"] = toJson(*findings.error);
     }

@@ -8,11 +8,11 @@ import page_input
 from page_input import BadInput, number
 
 AGAIN = "run `slabcast edit` again"
-TIMES = ("frameMs", "octreeMs", "naiveMs")
+TIMES = ("frame_ms", "octree_ms", "naive_ms")
 KINDS = {"bitfield-octree": "bitfield octree", "minmax-octree": "min-max octree", "boolean-octree": "Boolean octree",
          "partitioned": "partitioned maps", "proximity": "proximity cloud", "chebyshev": "Chebyshev map",
          "blocks": "block occupancy", "none": "nothing"}
-PARTS = {"editMs": "edit", "workMs": "rebuilding", "prepareMs": "plan and uploads", "drawMs": "drawing"}
+PARTS = {"edit_ms": "edit", "work_ms": "rebuilding", "prepare_ms": "plan and uploads", "draw_ms": "drawing"}
 
 
 @dataclass(eq=False)
@@ -35,7 +35,7 @@ class Frame:
 
     @property
     def over_compared(self):
-        return self.times["frameMs"] / self.times["octreeMs"]
+        return self.times["frame_ms"] / self.times["octree_ms"]
 
 
 @dataclass
@@ -48,12 +48,12 @@ class Edit:
 
     @property
     def budget(self):
-        return number(self.section("summary").get("budgetMs"))
+        return number(self.section("summary").get("budget_ms"))
 
     @property
     def compared(self):
         """What each frame is compared with: the structure that is right under any transfer function."""
-        structure = self.section("summary").get("comparedWith")
+        structure = self.section("summary").get("compared_with")
         return "structure" if structure is None else KINDS.get(structure, str(structure))
 
     @property
@@ -85,8 +85,8 @@ def _frame(raw, where):
     for name, value in times.items():
         if value is None or value < 0:
             raise BadInput(f"{where}: {name} is no time; {AGAIN}")
-    if times["octreeMs"] == 0:
-        raise BadInput(f"{where}: octreeMs is 0; {AGAIN}")
+    if times["octree_ms"] == 0:
+        raise BadInput(f"{where}: octree_ms is 0; {AGAIN}")
     return Frame(raw, str(raw.get("step", "")), raw.get("edit") is True, str(raw.get("structure", "unknown")),
                  raw.get("progress") == "swapped", times)
 

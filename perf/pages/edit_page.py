@@ -45,16 +45,16 @@ def what_served(edit):
 
 def head(edit):
     summary, volume, device = edit.section("summary"), edit.section("volume"), edit.section("device")
-    worst, naive = of_summary(edit, "worstOverOctreeFrame"), of_summary(edit, "naive", "worstOverOctreeFrame")
+    worst, naive = of_summary(edit, "worst_over_octree_frame"), of_summary(edit, "naive", "worst_over_octree_frame")
     found = [card("Worst frame", times(worst), f"of a frame by {the(edit)} at rest; rebuilding all at once: "
                   f"{times(naive)}",
                   "skips" if worst is not None and worst <= GOAL else "")]
-    added, spread = of_summary(edit, "worstAddedOverOctreeFrame"), of_summary(edit, "worstOctreeFrameOverMedian")
+    added, spread = of_summary(edit, "worst_added_over_octree_frame"), of_summary(edit, "worst_octree_frame_over_median")
     if added is not None:
         found.append(card("Added at worst", f"{figures(100 * (added - 1))} %", "of such a frame, by edit, rebuilding and "
                           f"uploads; those by themselves vary up to {times(spread)} their median",
                           "skips" if added <= GOAL else ""))
-    equal, to_correct = number(summary.get("framesEqual")), number(summary.get("framesToCorrect"))
+    equal, to_correct = number(summary.get("frames_equal")), number(summary.get("frames_to_correct"))
     if equal is not None:
         found.append(card("From an edit to its picture",
                           MISSING if to_correct is None else plural(int(to_correct), "frame"),
@@ -62,10 +62,10 @@ def head(edit):
                           "skips" if equal == len(edit.frames) else ""))
     else:
         found.append(card("From an edit to its picture", MISSING, "not compared: --verify does"))
-    over = number(summary.get("framesOverBudget"))
+    over = number(summary.get("frames_over_budget"))
     found.append(card("Frames over the budget", figures(over),
                       f"of {len(edit.frames)}; {figures(edit.budget)} ms; rebuilding all at once: "
-                      f"{figures(of_summary(edit, 'naive', 'framesOverBudget'))}", "skips" if over == 0 else ""))
+                      f"{figures(of_summary(edit, 'naive', 'frames_over_budget'))}", "skips" if over == 0 else ""))
     line = ", ".join(filter(None, (esc(volume.get("name", "volume")), by(volume.get("dims", [])),
                                    plural(len(edit.edits), "edit"), esc(device.get("renderer", "unknown device")))))
     words = f"<p>{esc(what_served(edit))}</p>"
@@ -85,7 +85,7 @@ def work(edit):
 def budget_words(edit):
     if not edit.budget:
         return ""
-    given = edit.section("summary").get("budgetGiven") is True
+    given = edit.section("summary").get("budget_given") is True
     why = "as asked for" if given else f"{GOAL} times the median frame by {the(edit)}"
     return f" The dashed line is the budget: {figures(edit.budget)} ms, {why}."
 
@@ -95,13 +95,13 @@ def compared(edit):
     summary = edit.section("summary")
     rows = []
     for name, of_all, of_edits, worst, over in (
-            ("live policy", part(summary, "frameMs"), part(summary, "editFrameMs"),
-             of_summary(edit, "worstOverOctreeFrame"), of_summary(edit, "framesOverBudget")),
-            ("naive: all rebuilt at every edit", part(part(summary, "naive"), "frameMs"),
-             part(part(summary, "naive"), "editFrameMs"), of_summary(edit, "naive", "worstOverOctreeFrame"),
-             of_summary(edit, "naive", "framesOverBudget")),
-            (f"{the(edit)}, made beforehand: nothing edited", part(summary, "octreeFrameMs"), {},
-             of_summary(edit, "worstOctreeFrameOverMedian"), None)):
+            ("live policy", part(summary, "frame_ms"), part(summary, "edit_frame_ms"),
+             of_summary(edit, "worst_over_octree_frame"), of_summary(edit, "frames_over_budget")),
+            ("naive: all rebuilt at every edit", part(part(summary, "naive"), "frame_ms"),
+             part(part(summary, "naive"), "edit_frame_ms"), of_summary(edit, "naive", "worst_over_octree_frame"),
+             of_summary(edit, "naive", "frames_over_budget")),
+            (f"{the(edit)}, made beforehand: nothing edited", part(summary, "octree_frame_ms"), {},
+             of_summary(edit, "worst_octree_frame_over_median"), None)):
         rows.append([name, *(figures(of_all.get(key)) for key in ("median", "p90", "max")),
                      figures(of_edits.get("median")), figures(of_edits.get("max")), times(worst), figures(over)])
     return table(["ms per frame", "median", "90 %", "worst", "with an edit: median", "with an edit: worst",
@@ -112,7 +112,7 @@ def worst_frames(edit):
     slowest = sorted(enumerate(edit.frames), key=lambda one: -one[1].over_compared)[:WORST]
     rows = [[f"{i} <i>{esc(frame.step)}{', edit' if frame.edited else ''}{', hand-over' if frame.swapped else ''}</i>",
              times(frame.over_compared), *(short_ms(frame.times[name]) for name in (
-                 "octreeMs", "frameMs", "editMs", "workMs", "prepareMs", "drawMs")), esc(frame.structure)]
+                 "octree_ms", "frame_ms", "edit_ms", "work_ms", "prepare_ms", "draw_ms")), esc(frame.structure)]
             for i, frame in slowest]
     return table(["ms of frame", f"× {the(edit)}", the(edit), "frame", "edit", "rebuilding", "uploads", "drawing",
                   "skips by"], rows, css="rows")
@@ -123,33 +123,33 @@ def builds(edit):
     rows = []
     for name, entry, ms, when in (("right under any transfer function", part(made, "always"), "ms",
                                    "once, when editing begins"),
-                                  ("faster under one of them", part(made, "settled"), "lastMs",
+                                  ("faster under one of them", part(made, "settled"), "last_ms",
                                    "in pieces, when edits pause")):
         if entry:
-            rows.append([name, esc(entry.get("structure", "")), figures(entry.get("blockEdge")),
-                         figures(entry.get(ms)), mebibytes(entry.get("gpuBytes")) or MISSING, when])
-    if number(made.get("naiveMs")) is not None:
+            rows.append([name, esc(entry.get("structure", "")), figures(entry.get("block_edge")),
+                         figures(entry.get(ms)), mebibytes(entry.get("gpu_bytes")) or MISSING, when])
+    if number(made.get("naive_ms")) is not None:
         rows.append(["naive", esc(part(made, "settled").get("structure", "proximity")), MISSING,
-                     figures(made["naiveMs"]), MISSING, "in every frame with an edit"])
+                     figures(made["naive_ms"]), MISSING, "in every frame with an edit"])
     return table(["structure", "kind", "block edge", "built in, ms", "texture", "when"], rows) if rows else ""
 
 
 def run_facts(edit):
     conditions = edit.section("conditions")
     replays = number(conditions.get("replays"))
-    single = of_summary(edit, "worstOfSingleReplays")
+    single = of_summary(edit, "worst_of_single_replays")
     return facts([
         *device_facts(edit.raw),
         ("Picture", by(conditions.get("size", []))),
-        ("Ratio", f"{conditions.get('planes')} × {conditions.get('layersPerPlane')}"),
+        ("Ratio", f"{conditions.get('planes')} × {conditions.get('layers_per_plane')}"),
         ("Classification", esc(conditions.get("classification", ""))),
         ("Edits", CHANGED.get(conditions.get("edits"), "")),
-        ("Rebuilding", f"{figures(conditions.get('workBudgetMs'))} ms a frame, after "
-                       f"{figures(conditions.get('quietFrames'))} frames without an edit"),
-        ("Turned by", f"{figures(conditions.get('turnDegrees'))}°" if conditions.get("turnDegrees") else None),
+        ("Rebuilding", f"{figures(conditions.get('work_budget_ms'))} ms a frame, after "
+                       f"{figures(conditions.get('quiet_frames'))} frames without an edit"),
+        ("Turned by", f"{figures(conditions.get('turn_degrees'))}°" if conditions.get("turn_degrees") else None),
         ("Replays", f"{figures(replays)}: each frame's times are medians; worst of any single one {times(single)}"
          if replays and replays > 1 else None),
-        ("Compared with", f"{the(edit)}, made beforehand: median of {figures(conditions.get('octreeFrames'))} frames "
+        ("Compared with", f"{the(edit)}, made beforehand: median of {figures(conditions.get('octree_frames'))} frames "
                           "beside each"),
     ]) + command(edit.raw)
 

@@ -6,12 +6,12 @@ from edit_data import PARTS
 from page_svg import INK, MUTED, NARROW, WIDE, key, plain_log_ticks, plt, svg
 
 LIVE, NAIVE, COMPARED, BUDGET = INK, "#c8643a", "#8fb0cc", "#b02a1e"
-FETCHES = {"volumeFetches": ("of voxels", INK), "skipFetches": ("of the skip structure", "#1d5a91")}
+FETCHES = {"volume_fetches": ("of voxels", INK), "skip_fetches": ("of the skip structure", "#1d5a91")}
 STRUCTURES = {"bitfield-octree": "#1d5a91", "minmax-octree": "#1d5a91", "partitioned": "#1d5a91",
               "proximity": "#7fb58a", "chebyshev": "#7fb58a", "blocks": "#7fb58a", "none": "#d9d4c7",
               "nothing drawn": "#f0eee7"}
 OTHER = "#b9a6cf"
-PART_HUES = {"editMs": "#1d5a91", "workMs": "#d9a02b", "prepareMs": "#8b8f96"}
+PART_HUES = {"edit_ms": "#1d5a91", "work_ms": "#d9a02b", "prepare_ms": "#8b8f96"}
 WIDE_SPREAD = 6  # of frame times, from which on the axis is logarithmic
 
 
@@ -67,13 +67,13 @@ def trace(edit, narrow):
     def draw(name, **style):
         axes.plot(numbers, [frame.times[name] for frame in edit.frames], drawstyle="steps-mid", **style)
 
-    draw("naiveMs", color=NAIVE, lw=1.0, alpha=0.85, zorder=2)
-    draw("octreeMs", color=COMPARED, lw=2.6, zorder=3, alpha=0.9)
-    draw("frameMs", color=LIVE, lw=1.2, zorder=4)
+    draw("naive_ms", color=NAIVE, lw=1.0, alpha=0.85, zorder=2)
+    draw("octree_ms", color=COMPARED, lw=2.6, zorder=3, alpha=0.9)
+    draw("frame_ms", color=LIVE, lw=1.2, zorder=4)
     if edit.budget:
         axes.axhline(edit.budget, color=BUDGET, lw=1.1, dashes=(4, 2), zorder=5)
-    most = max(max(frame.frameMs, frame.naiveMs) for frame in edit.frames)
-    least = min(frame.frameMs for frame in edit.frames)
+    most = max(max(frame.frame_ms, frame.naive_ms) for frame in edit.frames)
+    least = min(frame.frame_ms for frame in edit.frames)
     if most > WIDE_SPREAD * least:
         axes.set_yscale("log")
         plain_log_ticks(axes.yaxis)

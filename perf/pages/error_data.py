@@ -47,13 +47,13 @@ class Row:
     def fetches(self):
         """Of the volume and of the skip structure; None where nothing was counted."""
         counters = page_input.section(self.raw, "counters")
-        volume, skip = number(counters.get("volumeFetches")), number(counters.get("skipFetches"))
+        volume, skip = number(counters.get("volume_fetches")), number(counters.get("skip_fetches"))
         return None if volume is None else volume + (skip or 0)
 
     @property
     def frames(self):
         """How many were timed; None where that is not said."""
-        count = number(page_input.section(self.raw, "frameMs").get("n"))
+        count = number(page_input.section(self.raw, "frame_ms").get("n"))
         return None if count is None else int(count)
 
     def key(self, names):
@@ -127,14 +127,14 @@ class Errors:
 
 
 def _row(raw, where):
-    times = page_input.section(raw, "frameMs")
+    times = page_input.section(raw, "frame_ms")
     spacing, median = number(raw.get("spacing")), number(times.get("median"))
     planes = number(page_input.section(raw, "plan").get("planes"))
     layers = number(raw.get("layers"))
     for name, value, good in (("spacing", spacing, spacing is not None and spacing > 0),
                               ("layers", layers, layers is not None and layers >= 0),
                               ("plan.planes", planes, planes is not None and planes >= 0),
-                              ("frameMs.median", median, median is not None and median > 0)):
+                              ("frame_ms.median", median, median is not None and median > 0)):
         if not good:
             raise BadInput(f"{where}.{name} is no number that makes sense; run `slabcast error` again")
     for name in ("id", "classification", "target"):
@@ -162,7 +162,7 @@ def load(folder):
     """DIR/error.json. Raises BadInput."""
     path, raw = page_input.read(folder, "error.json", "rows", "error VOLUME")
     rows = [_row(row, f"{path}: rows[{i}]") for i, row in enumerate(raw["rows"])]
-    front, by_fetches = (_front(raw, name, rows, path) for name in ("front", "frontByFetches"))
+    front, by_fetches = (_front(raw, name, rows, path) for name in ("front", "front_by_fetches"))
     for rank, row in enumerate(front, 1):
         row.rank = rank
     for rank, row in enumerate(by_fetches, 1):

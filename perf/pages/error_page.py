@@ -93,7 +93,7 @@ def front_cards(errors):
     def made(title, row):
         return card(title, f"{figures(row.median_ms)} ms", f"RMSE {scientific(row.rmse)}; {row_name(errors, row)}",
                     "skips")
-    alike = min((row for row in errors.rows if (delta := row.error("total", "p999DeltaE")) is not None
+    alike = min((row for row in errors.rows if (delta := row.error("total", "p999_delta_e")) is not None
                  and delta <= SEEN), key=lambda row: row.median_ms, default=None)
     found = [made("Fastest", errors.front[0])] if errors.front else []
     if alike:
@@ -113,15 +113,15 @@ def head(errors):
 
 def run_facts(errors):
     conditions, volume, reference = (errors.section(name) for name in ("conditions", "volume", "reference"))
-    spacing = " × ".join(figures(s) for s in volume.get("spacingMm") or [])
+    spacing = " × ".join(figures(s) for s in volume.get("spacing_mm") or [])
     camera = conditions.get("camera")
     tolerance, seconds = number(reference.get("tolerance")), number(reference.get("seconds"))
-    frames = conditions.get("framesPerRowAtMost")
+    frames = conditions.get("frames_per_row_at_most")
     earlier = len(errors.measured_earlier)
     resumed = (f'<p class="note">{plural(earlier, "row")} {"was" if earlier == 1 else "were"} measured earlier, in a '
                "run that was cut short.</p>") if earlier else ""
     settings = " · ".join(esc(conditions[name]) for name in ("space", "lattice") if conditions.get(name))
-    entries = [entry for entry in errors.raw.get("leftOut") or [] if isinstance(entry, dict)]
+    entries = [entry for entry in errors.raw.get("left_out") or [] if isinstance(entry, dict)]
     left_out = "".join(
         f'<p class="note">Left out: {esc(NAMES.get(entry.get("classification"), entry.get("classification")))}: '
         f'{esc(entry.get("why", ""))}</p>' for entry in entries)
@@ -130,11 +130,11 @@ def run_facts(errors):
         ("Volume", " · ".join(filter(None, (esc(volume.get("type", "")), esc(volume.get("unit", "")),
                                             f"{spacing} mm" if spacing else "", mebibytes(volume.get("bytes")))))),
         ("Picture", by(conditions.get("size"))),
-        ("Camera", f"{', '.join(figures(v) for v in camera)}; {figures(conditions.get('fovDegrees'))}° high"
+        ("Camera", f"{', '.join(figures(v) for v in camera)}; {figures(conditions.get('fov_degrees'))}° high"
          if isinstance(camera, list) else None),
-        ("Transfer function", esc(conditions.get("transferFunction", ""))),
+        ("Transfer function", esc(conditions.get("transfer_function", ""))),
         ("Space, lattice", settings),
-        ("Texels", esc(conditions.get("texelFormat", ""))),
+        ("Texels", esc(conditions.get("texel_format", ""))),
         ("Skipping, form", " · ".join(esc(conditions[name]) for name in ("skip", "form") if conditions.get(name))),
         ("Tight polygons", on_off(conditions.get("tighten"))),
         ("Reference", f"float64, to {scientific(tolerance, 1)} relative; {figures(seconds)} s" if tolerance else None),
@@ -201,7 +201,7 @@ def pictures(errors):
         files = part(row.raw, "pictures")
         both = (shown(files.get("thumbnail"), f"Picture of {row.id}")
                 + shown(files.get("difference"), f"Difference of {row.id}"))
-        factor = number(files.get("differenceFactor"))
+        factor = number(files.get("difference_factor"))
         times = f", difference × {figures(factor)}" if factor else ""
         if both:
             tiles.append(f'<figure><div class="pair">{both}</div><figcaption><b>{row.rank}</b>'
@@ -231,10 +231,10 @@ def all_rows(errors):
         lines.append([
             f"<code>{esc(row.id)}</code>", " · ".join(fronts) or MISSING, f"<b>{scientific(row.rmse)}</b>",
             figures(row.error("total", "psnr")), scientific(row.error("total", "max")),
-            figures(row.error("total", "meanDeltaE")), figures(row.error("total", "p999DeltaE")),
+            figures(row.error("total", "mean_delta_e")), figures(row.error("total", "p999_delta_e")),
             *(scientific(row.error(name)) for name in PARTS[1:]), _order(row), f"<b>{figures(row.median_ms)}</b>",
             f"{figures(row.low_ms)} – {figures(row.high_ms)}", esc(row.frames or MISSING), millions(row.fetches),
-            f"{row.planes}×{esc(plan.get('layersPerPlane', '?'))}",
+            f"{row.planes}×{esc(plan.get('layers_per_plane', '?'))}",
             esc(NAMES.get(row.classification, row.classification)),
             esc(NAMES.get(row.target, row.target)), esc(say(row, "termination")), on_off(row.jitter),
             f"<details><summary>show</summary><code>{esc(row.raw['command'])}</code></details>"

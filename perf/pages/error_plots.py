@@ -248,7 +248,7 @@ def by_planes(errors, narrow):
 def jitter(errors, narrow):
     """Each setting with jitter over the same without: below the diagonal, jitter helps."""
     pairs = errors.pairs("jitter", False, True)
-    panels = [(("total", "rmse"), RMSE), (("total", "p999DeltaE"), "99.9th percentile of ΔE 2000")]
+    panels = [(("total", "rmse"), RMSE), (("total", "p999_delta_e"), "99.9th percentile of ΔE 2000")]
     panels = [(what, title, points) for what, title in panels
               if (points := [(b, a.error(*what), b.error(*what)) for a, b in pairs
                              if a.error(*what) and b.error(*what)])]

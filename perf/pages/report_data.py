@@ -10,10 +10,10 @@ from page_input import BadInput, number
 SERIES_KEYS = ("skip", "form", "tighten", "lattice", "classification", "termination")
 COUNTERS = {
     "fragments": "fragments",
-    "layersEvaluated": "layers evaluated",
-    "layersSkipped": "layers skipped",
-    "volumeFetches": "volume fetches",
-    "skipFetches": "skip fetches",
+    "layers_evaluated": "layers evaluated",
+    "layers_skipped": "layers skipped",
+    "volume_fetches": "volume fetches",
+    "skip_fetches": "skip fetches",
 }
 # Tukora 2020, section 3 and Fig. 4: frames per second (without skipping, with skipping) on the paper's phone.
 PAPER_FIGURES = {"ray casting": (4.7, 8.5), "hybrid": (None, 36.0), "slicing": (13.9, 13.9)}
@@ -81,10 +81,10 @@ class Sweep:
 
 
 def _row(raw, where):
-    planes, layers = number(raw.get("planes")), number(raw.get("layersPerPlane"))
-    times = page_input.section(raw, "frameMs")
+    planes, layers = number(raw.get("planes")), number(raw.get("layers_per_plane"))
+    times = page_input.section(raw, "frame_ms")
     median = number(times.get("median"))
-    for name, value in (("planes", planes), ("layersPerPlane", layers), ("frameMs.median", median)):
+    for name, value in (("planes", planes), ("layers_per_plane", layers), ("frame_ms.median", median)):
         if value is None or value <= 0:
             raise BadInput(f"{where}.{name} is no positive number; run the sweep again")
     low, high = number(times.get("min")), number(times.get("max"))

@@ -29,12 +29,12 @@ def findings(sweep):
 def run_facts(sweep):
     conditions, volume = sweep.section("conditions"), sweep.section("volume")
     size = by(conditions.get("size", []))
-    spacing = " × ".join(figures(s) for s in volume.get("spacingMm", []))
+    spacing = " × ".join(figures(s) for s in volume.get("spacing_mm", []))
     settings = " · ".join(esc(conditions[key]) for key in ("classification", "space", "target", "lattice")
                           if conditions.get(key))
     termination, shade = conditions.get("termination"), conditions.get("shade")
-    layers = conditions.get("totalLayers")
-    step = number(conditions.get("layerSpacingMm"))
+    layers = conditions.get("total_layers")
+    step = number(conditions.get("layer_spacing_mm"))
     views = conditions.get("views")
     return facts([
         *device_facts(sweep.raw),
@@ -44,7 +44,7 @@ def run_facts(sweep):
         ("Shading, termination", f"{esc(shade)}, {esc(termination)}" if shade or termination else None),
         ("Layers", f"{layers} in total{f', {figures(step)} mm apart' if step else ''}" if layers else None),
         ("Tight polygons", on_off(conditions.get("tighten"))),
-        ("Frames per row", conditions.get("framesPerRow")),
+        ("Frames per row", conditions.get("frames_per_row")),
     ]) + command(sweep.raw)
 
 
@@ -93,15 +93,15 @@ def against_plain_slicing(sweep):
 
 
 def memory_and_speed(sweep):
-    memory, build, volume = (sweep.section(n) for n in ("memory", "skipBuild", "volume"))
-    occupied = number(build.get("occupiedFraction"))
+    memory, build, volume = (sweep.section(n) for n in ("memory", "skip_build", "volume"))
+    occupied = number(build.get("occupied_fraction"))
     pairs = [
-        ("Peak host memory", mebibytes(memory.get("peakHostBytes"))),
-        ("Volume in memory", mebibytes(memory.get("volumeBytes", volume.get("bytes")))),
-        ("Textures", mebibytes(memory.get("textureBytes"))),
-        ("Skip structure in memory", mebibytes(memory.get("skipBytes"))),
+        ("Peak host memory", mebibytes(memory.get("peak_host_bytes"))),
+        ("Volume in memory", mebibytes(memory.get("volume_bytes", volume.get("bytes")))),
+        ("Textures", mebibytes(memory.get("texture_bytes"))),
+        ("Skip structure in memory", mebibytes(memory.get("skip_bytes"))),
         ("Skip structure built in", f"{figures(build['ms'])} ms" if number(build.get("ms")) is not None else None),
-        ("Skip structure", f"{esc(build['structure'])}, blocks of {esc(build.get('blockEdge', '?'))}³ voxels"
+        ("Skip structure", f"{esc(build['structure'])}, blocks of {esc(build.get('block_edge', '?'))}³ voxels"
          if build.get("structure") else None),
         ("Blocks not free", f"{100 * occupied:.1f} %" if occupied is not None else None),
     ]
@@ -119,14 +119,14 @@ def all_rows(sweep):
     lines = []
     for series in sweep.series:
         for row in series.rows:
-            ms, raw = row.raw["frameMs"], row.raw
+            ms, raw = row.raw["frame_ms"], row.raw
             lines.append([
                 row.label, esc(raw.get("skip", MISSING)), esc(raw.get("form", MISSING)),
                 on_off(raw.get("tighten")) or MISSING, f"<b>{figures(row.median_ms)}</b>",
                 f"{figures(row.low_ms)} – {figures(row.high_ms)}",
                 f"{figures(ms.get('p10'))} – {figures(ms.get('p90'))}", figures(ms.get("n")), figures(row.fps),
                 *(millions(row.counter(name)) for name in plots.COUNTERS),
-                figures(raw.get("compileMs")), f"<code>{esc(raw.get('variant', MISSING))}</code>"])
+                figures(raw.get("compile_ms")), f"<code>{esc(raw.get('variant', MISSING))}</code>"])
     return table(head, lines, css="rows") + '<p class="note">Counters are millions per frame.</p>'
 
 

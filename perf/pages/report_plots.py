@@ -131,7 +131,7 @@ def compile_times(sweep, narrow):
     """Per variant the longest time measured: later uses find it compiled."""
     longest = {}
     for row in sweep.rows:
-        name, ms = row.raw.get("variant"), number(row.raw.get("compileMs"))
+        name, ms = row.raw.get("variant"), number(row.raw.get("compile_ms"))
         if name and ms is not None:
             key = (str(name), row.raw.get("skip") not in (None, "none"))
             longest[key] = max(ms, longest.get(key, 0.0))

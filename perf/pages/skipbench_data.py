@@ -15,7 +15,7 @@ STRUCTURES = tuple(NAMES)
 PUBLISHED = {"proximity": "distance map", "chebyshev": "distance map", "boolean-octree": "boolean-octree",
              "minmax-octree": "minmax-octree", "bitfield-octree": "bitfield-octree"}
 # What frames do, and its key in a paper's table.
-MODES = {"marching only": "marchingOnly", "early exit": "earlyExit", "shading": "shading"}
+MODES = {"marching only": "marching_only", "early exit": "early_exit", "shading": "shading"}
 AGAIN = "run `slabcast skipbench` again"
 
 
@@ -43,11 +43,11 @@ class Row:
 
     @property
     def ms(self):
-        return self.at("frameMs", "median")
+        return self.at("frame_ms", "median")
 
     @property
     def spread(self):
-        low, high = self.at("frameMs", "min"), self.at("frameMs", "max")
+        low, high = self.at("frame_ms", "min"), self.at("frame_ms", "max")
         return (self.ms if low is None else low), (self.ms if high is None else high)
 
     @property
@@ -58,8 +58,8 @@ class Row:
     def parameters(self):
         """In a few words; what a structure does not have goes without saying."""
         words = []
-        for key, say in (("blockEdge", "{}³"), ("bits", "{} bits"), ("partitions", "{} partitions"),
-                         ("initialLevel", "level {}"), ("traversal", "{}")):
+        for key, say in (("block_edge", "{}³"), ("bits", "{} bits"), ("partitions", "{} partitions"),
+                         ("initial_level", "level {}"), ("traversal", "{}")):
             if self.raw.get(key) is not None:
                 words.append(say.format(self.raw[key]))
         return ", ".join(words)
@@ -146,7 +146,7 @@ def load(folder):
             if not isinstance(row.get(name), str):
                 raise BadInput(f"{where}.{name} is no text; {AGAIN}")
         if row.get("table") == "frames":
-            for name, value in (("frameMs.median", row.ms), ("speedup", row.speedup)):
+            for name, value in (("frame_ms.median", row.ms), ("speedup", row.speedup)):
                 if value is None or value <= 0:
                     raise BadInput(f"{where}.{name} is no number that makes sense; {AGAIN}")
     if not any(row.get("table") == "frames" for row in rows):

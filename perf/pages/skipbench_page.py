@@ -15,7 +15,7 @@ def volume_sections(bench, entry):
     volume = entry.get("name", "volume")
     name = esc(volume)
     what = " · ".join(filter(None, (by(entry.get("dims")), esc(entry.get("type", "")),
-                                    esc(entry.get("transferFunction", "")))))
+                                    esc(entry.get("transfer_function", "")))))
     compared = {row.structure for row in bench.of("frames", volume=volume, family="ray casting")} - {"none"}
     casting = figure(plots.speedups(bench, volume), bench,
                      "Each structure with the parameters that suit it best (partitioned maps with usual ones), on equal "
@@ -71,17 +71,17 @@ def head(bench):
 
 def run_facts(bench):
     conditions = bench.section("conditions")
-    camera, frames = conditions.get("camera"), conditions.get("framesPerRowAtMost")
-    spacing = number(conditions.get("layerSpacingVoxels"))
+    camera, frames = conditions.get("camera"), conditions.get("frames_per_row_at_most")
+    spacing = number(conditions.get("layer_spacing_voxels"))
     return facts([
         *device_facts(bench.raw),
         ("Picture", by(conditions.get("size"))),
-        ("Camera", f"{', '.join(figures(v) for v in camera)}; {figures(conditions.get('fovDegrees'))}° high"
+        ("Camera", f"{', '.join(figures(v) for v in camera)}; {figures(conditions.get('fov_degrees'))}° high"
          if isinstance(camera, list) else None),
         ("Layers", f"every {figures(spacing)} of the smallest voxel edge, {esc(conditions.get('lattice', ''))}" if spacing else None),
         ("Early exit at", figures(conditions.get("termination"))),
         ("Target, space", " · ".join(esc(conditions[name]) for name in ("target", "space") if conditions.get(name))),
-        ("Partition budget", mebibytes(conditions.get("partitionBudgetBytes"))),
+        ("Partition budget", mebibytes(conditions.get("partition_budget_bytes"))),
         ("Frames per row", f"at most {esc(frames)}{' (quick run)' if conditions.get('quick') else ''}" if frames
          else None),
         ("Order", "shuffled anew in every round"),

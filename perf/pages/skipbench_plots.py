@@ -114,7 +114,7 @@ def families(bench, volume):
 def merging(bench, volume):
     """A panel per block edge: merge times over partitions, against both ways to rebuild."""
     def draw(_, narrow):
-        edges = sorted({row.get("blockEdge") for row in bench.of("rebuild", volume=volume)}, reverse=True)
+        edges = sorted({row.get("block_edge") for row in bench.of("rebuild", volume=volume)}, reverse=True)
         if not edges:
             return None
         columns = 1 if narrow else len(edges)
@@ -124,11 +124,11 @@ def merging(bench, volume):
                                     figsize=(NARROW, 2.5 * lines) if narrow else (WIDE, 3.1))
         for axes, edge in zip(grid.flat, edges):
             for transfer, colour in TRANSFERS.items():
-                rows = bench.of("merge", volume=volume, blockEdge=edge, tf=transfer)
-                axes.plot([row.get("partitions") for row in rows], [row.at("updateMs", "median") for row in rows],
+                rows = bench.of("merge", volume=volume, block_edge=edge, tf=transfer)
+                axes.plot([row.get("partitions") for row in rows], [row.at("update_ms", "median") for row in rows],
                           "o-", color=colour, lw=1.3, ms=3.4, zorder=3)
-            rebuilds = bench.of("rebuild", volume=volume, blockEdge=edge, structure="chebyshev")
-            for name, style in (("buildMs", "-"), ("ofRangesMs", (0, (4, 3)))):
+            rebuilds = bench.of("rebuild", volume=volume, block_edge=edge, structure="chebyshev")
+            for name, style in (("build_ms", "-"), ("of_ranges_ms", (0, (4, 3)))):
                 level = middle([row.at(name, "median") for row in rebuilds])
                 if level is not None:
                     axes.axhline(level, color=INK, lw=1.1, ls=style, zorder=2)
@@ -148,7 +148,7 @@ def merging(bench, volume):
 
 
 def key_of_transfers(bench, volume):
-    names = {row.get("tf"): row.get("tfName") for row in bench.of("rebuild", volume=volume)}
+    names = {row.get("tf"): row.get("tf_name") for row in bench.of("rebuild", volume=volume)}
     merged = [(esc(f"{tf}: {names[tf]}"), colour, "o", False, "none") for tf, colour in TRANSFERS.items() if tf in names]
     return key([*merged, ("rebuilt in full", INK, None, False, "none"),
                 ("rebuilt of kept ranges", INK, None, False, "4 3")])
@@ -156,11 +156,11 @@ def key_of_transfers(bench, volume):
 
 def _mebibytes(row):
     """On the GPU, and of partitioned maps on the host; None where nothing is held."""
-    held = row.at("gpuBytes")
-    return None if held is None else (held + (row.at("hostBytes") or 0)) / 2 ** 20
+    held = row.at("gpu_bytes")
+    return None if held is None else (held + (row.at("host_bytes") or 0)) / 2 ** 20
 
 
-SIZED = (("build, ms", lambda row: row.at("buildMs", "median")), ("memory, MiB", _mebibytes),
+SIZED = (("build, ms", lambda row: row.at("build_ms", "median")), ("memory, MiB", _mebibytes),
          ("frame, ms", lambda row: row.ms))
 
 

@@ -6,7 +6,7 @@ from skipbench_data import MODES, NAMES, STRUCTURES, span
 
 HEAT = (245, 248, 250), (29, 90, 145)  # of the slowest and the fastest cell
 SLOW = 1.6  # times the fastest: no colour beyond
-COUNTERS = ("layersEvaluated", "volumeFetches", "skipFetches", "stretches", "blocksVisited")
+COUNTERS = ("layers_evaluated", "volume_fetches", "skip_fetches", "stretches", "blocks_visited")
 
 
 def cubed(text):
@@ -119,11 +119,11 @@ def families(bench, volume):
     for row in bench.of("frames", volume=volume):
         if row.get("family") != "ray casting":
             lines.append([row.name, esc(row.get("family")), esc(row.get("mode")),
-                          f"{esc(row.get('planes'))}×{esc(row.get('layersPerPlane'))}",
+                          f"{esc(row.get('planes'))}×{esc(row.get('layers_per_plane'))}",
                           "rectangles" if row.get("tighten") else "sphere", esc(row.get("order", MISSING)),
                           figures(row.ms), span(row.spread, figures), times(row.speedup),
-                          millions(row.at("counters", "layersEvaluated")),
-                          millions(row.at("counters", "skipFetches"))])
+                          millions(row.at("counters", "layers_evaluated")),
+                          millions(row.at("counters", "skip_fetches"))])
     head = ["structure", "family", "mode", "planes × layers", "planes are", "blended", "ms", "min – max",
             "times as fast", "layers, M", "skip fetches, M"]
     return lines and folded(f"{len(lines)} rows, each at its best ratio", table(head, lines, css="rows bench"))
@@ -158,7 +158,7 @@ def _heat(rows, down, across, caption):
 
 def searched(bench, volume):
     """Each structure's grid, folded to two of its parameters at a time."""
-    edge, level = ("blockEdge", lambda value: f"{value}³ voxels"), ("initialLevel", lambda value: f"level {value}")
+    edge, level = ("block_edge", lambda value: f"{value}³ voxels"), ("initial_level", lambda value: f"level {value}")
     bits, way, nothing = ("bits", lambda value: f"{value} bits"), ("traversal", str), ("", lambda _: "ms")
     parts = []
     for structure in STRUCTURES:
@@ -193,16 +193,16 @@ def _refusal(reason):
 def generation(bench, volume):
     """Built, held, and changed with the transfer function; the volume's own size beside."""
     entry = bench.entry(volume)
-    texels, codes = number(entry.get("texelBytes")), number(entry.get("codesMs"))
+    texels, codes = number(entry.get("texel_bytes")), number(entry.get("codes_ms"))
     lines = []
     for row in bench.of("structures", volume=volume):
         if row.get("refused"):
             lines.append([row.name, esc(row.parameters), _refusal(row.get("refused")), *[MISSING] * 6])
             continue
-        gpu, host, occupied = row.at("gpuBytes"), row.at("hostBytes"), row.at("occupiedFraction")
-        lines.append([row.name, esc(row.parameters), _spread(row, "buildMs"),
-                      _spread(row, "gpuBuildMs") if row.get("gpuBuildMs") else _refusal(row.get("gpuRefused")),
-                      figures(row.at("updateMs", "median")), mib(gpu),
+        gpu, host, occupied = row.at("gpu_bytes"), row.at("host_bytes"), row.at("occupied_fraction")
+        lines.append([row.name, esc(row.parameters), _spread(row, "build_ms"),
+                      _spread(row, "gpu_build_ms") if row.get("gpu_build_ms") else _refusal(row.get("gpu_refused")),
+                      figures(row.at("update_ms", "median")), mib(gpu),
                       f"{100 * gpu / texels:.2g} %" if gpu and texels else MISSING, mib(host) if host else MISSING,
                       f"{100 * occupied:.3g} %" if occupied is not None else MISSING])
     head = ["structure", "parameters", "build on the CPU, ms", "on the GPU, ms", "another TF, ms", "GPU memory",
@@ -210,7 +210,7 @@ def generation(bench, volume):
     told = ("Medians of builds in turn; below them the fastest and the slowest. The CPU begins with codes that all share"
             f"{f' ({figures(codes)} ms, once)' if codes else ''}, the GPU with the volume’s texture; the GPU’s times end "
             "when the host has its copy, too. ")
-    ours = [row and row.at("buildMs", "median") for row in (
+    ours = [row and row.at("build_ms", "median") for row in (
         bench.one("structures", volume=volume, structure=name) for name in ("proximity", "bitfield-octree"))]
     paper = span([data["generation"][0] / data["generation"][3] for data in bench.paper("faludi").get("datasets", [])],
                  lambda value: f"{value:.1f}")
@@ -226,7 +226,7 @@ def generation(bench, volume):
 
 
 def _once(row):
-    return MISSING if row is None else "refused" if row.get("refused") else figures(row.at("initMs"))
+    return MISSING if row is None else "refused" if row.get("refused") else figures(row.at("init_ms"))
 
 
 def _kept(row):
@@ -234,29 +234,29 @@ def _kept(row):
         return MISSING
     if row.get("refused"):
         return f"<details><summary class=fail>refused</summary><span class=why>{esc(row.get('refused'))}</span></details>"
-    return mib(row.at("hostBytes"))
+    return mib(row.at("host_bytes"))
 
 
 def _merged(bench, row, edge, transfer, count):
     if row is None:
         return MISSING
     paper = span(bench.published_merges(transfer, count), lambda value: f"{value:.1f}×") if edge == 4 else ""
-    return (f"{figures(row.at('updateMs', 'median'))} ms <b>{row.speedup:.1f}×</b>"
+    return (f"{figures(row.at('update_ms', 'median'))} ms <b>{row.speedup:.1f}×</b>"
             + (f"<br><i>{paper}</i>" if paper else ""))
 
 
 def _merges_at(bench, volume, edge, counts):
     """One block edge: a line per transfer function, then what the partitions take once."""
     lines = []
-    for rebuild in bench.of("rebuild", volume=volume, blockEdge=edge, structure="chebyshev"):
+    for rebuild in bench.of("rebuild", volume=volume, block_edge=edge, structure="chebyshev"):
         transfer = rebuild.get("tf", "")
-        proximity = bench.one("rebuild", volume=volume, blockEdge=edge, structure="proximity", tf=transfer)
-        lines.append([f"{esc(transfer)}<small>{esc(rebuild.get('tfName', ''))}</small>",
-                      figures(rebuild.at("buildMs", "median")), figures(rebuild.at("ofRangesMs", "median")),
-                      figures(proximity.at("buildMs", "median")) if proximity else MISSING,
-                      *(_merged(bench, bench.one("merge", volume=volume, blockEdge=edge, tf=transfer,
+        proximity = bench.one("rebuild", volume=volume, block_edge=edge, structure="proximity", tf=transfer)
+        lines.append([f"{esc(transfer)}<small>{esc(rebuild.get('tf_name', ''))}</small>",
+                      figures(rebuild.at("build_ms", "median")), figures(rebuild.at("of_ranges_ms", "median")),
+                      figures(proximity.at("build_ms", "median")) if proximity else MISSING,
+                      *(_merged(bench, bench.one("merge", volume=volume, block_edge=edge, tf=transfer,
                                                  partitions=count), edge, transfer, count) for count in counts)])
-    made = [bench.one("partitions", volume=volume, blockEdge=edge, partitions=count) for count in counts]
+    made = [bench.one("partitions", volume=volume, block_edge=edge, partitions=count) for count in counts]
     lines.append(["one time, ms", "", "", "", *(_once(row) for row in made)])
     lines.append(["memory", "", "", "", *(_kept(row) for row in made)])
     head = [f"blocks of {edge}³" if edge > 1 else "single voxels", "rebuilt, ms", "of kept ranges, ms",
@@ -267,7 +267,7 @@ def _merges_at(bench, volume, edge, counts):
 def merging(bench, volume):
     """Rebuilding over merging, for every edge, transfer function and number of partitions; the paper's below ours."""
     counts = sorted({row.get("partitions") for row in bench.of("partitions", volume=volume)})
-    edges = sorted({row.get("blockEdge") for row in bench.of("rebuild", volume=volume)}, reverse=True)
+    edges = sorted({row.get("block_edge") for row in bench.of("rebuild", volume=volume)}, reverse=True)
     told = ("Times to follow a change of transfer function on the processor; in bold how many times faster merging is "
             "than rebuilding the Chebyshev map in full. “Of kept ranges” rebuilds from the least and greatest value "
             "of every block, which no transfer function changes: ours, not the paper’s. The least value has a "
@@ -293,8 +293,8 @@ def sizes(bench):
             if row is None:
                 cells += [MISSING] * 4
             else:
-                cells += ["refused" if row.get("refused") else figures(row.at("buildMs", "median")),
-                          figures(row.at("gpuBuildMs", "median")), mib(row.at("gpuBytes")), figures(row.ms)]
+                cells += ["refused" if row.get("refused") else figures(row.at("build_ms", "median")),
+                          figures(row.at("gpu_build_ms", "median")), mib(row.at("gpu_bytes")), figures(row.ms)]
         lines.append(cells)
     head = ["structure"]
     for edge in edges:

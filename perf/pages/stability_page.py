@@ -150,18 +150,18 @@ def left_out(family):
     """What the plan of each scene did without, by GL's own account, and what that saved."""
     lines, frames = [], set()
     for case in family.cases:
-        found = case.extra("leftOut")
+        found = case.extra("left_out")
         if not found:
             continue
         plan, samplers = (found.get(name) if isinstance(found.get(name), list) else [] for name in ("plan", "samplers"))
-        ms, all_ms = number(found.get("leastFrameMs")), number(found.get("leastFrameMsWithAll"))
-        frames.add(figures(found.get("timedFrames")))
+        ms, all_ms = number(found.get("least_frame_ms")), number(found.get("least_frame_ms_with_all"))
+        frames.add(figures(found.get("timed_frames")))
         items = "".join(f"<li>{esc(text)}</li>" for text in plan)
         lines.append([
-            _named(case), f"<ul>{items}</ul>" if items else MISSING, figures(found.get("activeUniforms")),
+            _named(case), f"<ul>{items}</ul>" if items else MISSING, figures(found.get("active_uniforms")),
             "<br>".join(f"<code>{esc(name)}</code>" for name in samplers) or "none",
             figures(found.get("fragments")), figures(found.get("layers")),
-            mebibytes(found.get("volumeAndSkipBytes")) or MISSING, figures(ms), figures(all_ms),
+            mebibytes(found.get("volume_and_skip_bytes")) or MISSING, figures(ms), figures(all_ms),
             times(all_ms / ms if ms and all_ms and found.get("fragments") else None)])
     head = ["scene", "what its plan says", "active uniforms", "samplers", "fragments", "layers",
             "volume and skip structure", f"least of {'/'.join(sorted(frames))}, ms", "with everything, ms", "faster by"]

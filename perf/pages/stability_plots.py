@@ -53,7 +53,7 @@ def plots_of(family):
         series = case.extra("series")
         x, y = number(series.get("x")), number(series.get("y"))
         if x is not None and y is not None and x > 0 and y >= 0:
-            labels, panel, group = ((str(series.get("xLabel", "x")), str(series.get("yLabel", "y"))),
+            labels, panel, group = ((str(series.get("x_label", "x")), str(series.get("y_label", "y"))),
                                     str(series.get("panel", "")), str(series.get("group", "")))
             panels.setdefault((labels, panel), {}).setdefault(group, []).append((x, y))
     found = {}

@@ -116,13 +116,13 @@ void addRayCasting(const Judged& judged) {
     }
     const Value bitfield = timeOverDistanceMap(judged, SkipStructure::BitfieldOctree);
     const Value minMax = timeOverDistanceMap(judged, SkipStructure::MinMaxOctree);
-    judged.add({.key = "bitfieldOctreeOverDistanceMapTime",
+    judged.add({.key = "bitfield_octree_over_distance_map_time",
                 .name = "bitfield octree against the distance map, marching only",
                 .value = bitfield,
                 .goal = goalIf(bone, 1.7),
                 .sense = Sense::AtMost,
                 .from = "its time over the map's"});
-    judged.add({.key = "bitfieldOctreeOverMinmaxOctreeTime",
+    judged.add({.key = "bitfield_octree_over_minmax_octree_time",
                 .name = "bitfield octree against the min-max octree, marching only",
                 .value = quotient(bitfield, minMax),
                 .goal = goalIf(bone, 1.0),
@@ -217,7 +217,7 @@ void addMerging(const Judged& judged) {
                       " transfer functions (" + number(all.min) + " to " + number(all.max) + ")"
                 : "not measured: over the memory budget";
         judged.add(
-            {.key = "merge16SpeedupEdge" + std::to_string(edge),
+            {.key = "merge_16_speedup_edge_" + std::to_string(edge),
              .name = "merging 16 partitions against rebuilding, blocks of " + std::to_string(edge),
              .value = any ? Value(all.median) : std::nullopt,
              .goal = goalIf(edge == 4, 10.0),
@@ -236,7 +236,7 @@ void addBuilds(const Judged& judged) {
                r.options.structure == SkipStructure::BitfieldOctree;
     }); // none where it is not among the sizes
     const bool built = row != nullptr && row->build && row->build->refused.empty();
-    judged.add({.key = "bitfieldOctree256BuildMs",
+    judged.add({.key = "bitfield_octree_256_build_ms",
                 .name = "bitfield octree of 256^3, build",
                 .value = built ? Value(summarise(row->build->ms).median) : std::nullopt,
                 .goal = 60.0,
@@ -245,7 +245,7 @@ void addBuilds(const Judged& judged) {
                         number(row != nullptr ? row->cube->codesMs : 0.0) +
                         " ms; leaves of 4 voxels, 32 bits"});
     judged.add(
-        {.key = "bitfieldOctree256MemoryShare",
+        {.key = "bitfield_octree_256_memory_share",
          .name = "bitfield octree of 256^3, memory",
          .value = built ? Value(static_cast<double>(row->build->memory.gpuBytes) / (2.0 * kVoxels))
                         : std::nullopt,

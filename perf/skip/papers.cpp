@@ -98,8 +98,8 @@ json faludi() {
     for (const FaludiDataset& d : kFaludi) {
         datasets.push_back({{"name", d.name},
                             {"dims", d.dims},
-                            {"marchingOnly", d.marching},
-                            {"earlyExit", d.earlyExit},
+                            {"marching_only", d.marching},
+                            {"early_exit", d.earlyExit},
                             {"shading", d.shading},
                             {"generation", d.generation}});
     }

@@ -19,34 +19,34 @@ constexpr CsvColumn kColumns[] = {{"table", "/table"},
                                   {"edge", "/edge"},
                                   {"family", "/family"},
                                   {"mode", "/mode"},
-                                  {"finals_of", "/finalsOf"},
+                                  {"finals_of", "/finals_of"},
                                   {"structure", "/structure"},
-                                  {"block_edge", "/blockEdge"},
+                                  {"block_edge", "/block_edge"},
                                   {"bits", "/bits"},
                                   {"partitions", "/partitions"},
-                                  {"initial_level", "/initialLevel"},
+                                  {"initial_level", "/initial_level"},
                                   {"traversal", "/traversal"},
                                   {"tf", "/tf"},
-                                  {"tf_name", "/tfName"},
+                                  {"tf_name", "/tf_name"},
                                   {"planes", "/planes"},
-                                  {"layersPerPlane", "/layersPerPlane"},
+                                  {"layers_per_plane", "/layers_per_plane"},
                                   {"tighten", "/tighten"},
                                   {"order", "/order"},
                                   {"search_ms", "/ms"},
                                   {"speedup", "/speedup"},
-                                  {"build_ms", "/buildMs/median"},
-                                  {"build_ms_min", "/buildMs/min"},
-                                  {"build_ms_max", "/buildMs/max"},
-                                  {"gpu_build_ms", "/gpuBuildMs/median"},
-                                  {"gpu_build_ms_min", "/gpuBuildMs/min"},
-                                  {"gpu_build_ms_max", "/gpuBuildMs/max"},
-                                  {"gpu_refused", "/gpuRefused"},
-                                  {"build_of_ranges_ms", "/ofRangesMs/median"},
-                                  {"init_ms", "/initMs"},
-                                  {"update_ms", "/updateMs/median"},
-                                  {"gpu_bytes", "/gpuBytes"},
-                                  {"host_bytes", "/hostBytes"},
-                                  {"occupied_fraction", "/occupiedFraction"},
+                                  {"build_ms", "/build_ms/median"},
+                                  {"build_ms_min", "/build_ms/min"},
+                                  {"build_ms_max", "/build_ms/max"},
+                                  {"gpu_build_ms", "/gpu_build_ms/median"},
+                                  {"gpu_build_ms_min", "/gpu_build_ms/min"},
+                                  {"gpu_build_ms_max", "/gpu_build_ms/max"},
+                                  {"gpu_refused", "/gpu_refused"},
+                                  {"build_of_ranges_ms", "/of_ranges_ms/median"},
+                                  {"init_ms", "/init_ms"},
+                                  {"update_ms", "/update_ms/median"},
+                                  {"gpu_bytes", "/gpu_bytes"},
+                                  {"host_bytes", "/host_bytes"},
+                                  {"occupied_fraction", "/occupied_fraction"},
                                   {"refused", "/refused"}};
 
 const char* name(Table table) {
@@ -67,7 +67,7 @@ json timesOf(const std::vector<double>& ms) {
 json fieldsOf(const SkipOptions& o) {
     json row{{"structure", name(o.structure)}};
     if (o.structure != SkipStructure::None) {
-        row["blockEdge"] = o.blockEdgeVoxels;
+        row["block_edge"] = o.blockEdgeVoxels;
     }
     if (o.structure == SkipStructure::BitfieldOctree) {
         row["bits"] = o.bits;
@@ -76,7 +76,7 @@ json fieldsOf(const SkipOptions& o) {
         row["partitions"] = o.partitions;
     }
     if (isOctree(o.structure)) {
-        row["initialLevel"] = o.initialLevel;
+        row["initial_level"] = o.initialLevel;
         row["traversal"] = name(o.traversal);
     }
     return row;
@@ -84,38 +84,38 @@ json fieldsOf(const SkipOptions& o) {
 
 json fieldsOf(const FramePlan& plan) {
     return {{"planes", plan.planes},
-            {"layersPerPlane", plan.layersPerPlane},
+            {"layers_per_plane", plan.layersPerPlane},
             {"tighten", plan.tighten},
             {"order", name(plan.order)},
             {"variant", name(plan.variant)}};
 }
 
 json fieldsOf(const Cube& cube) {
-    return {{"edge", cube.edge}, {"volumeBytes", cube.volumeBytes}, {"codesMs", cube.codesMs}};
+    return {{"edge", cube.edge}, {"volume_bytes", cube.volumeBytes}, {"codes_ms", cube.codesMs}};
 }
 
 json fieldsOf(const Raced& raced) {
-    return {{"frameMs", timesOf(raced.samples)},
+    return {{"frame_ms", timesOf(raced.samples)},
             {"samples", raced.samples},
             {"speedup", raced.speedup}};
 }
 
 json fieldsOf(const Memory& memory) {
-    return {{"gpuBytes", memory.gpuBytes}, {"hostBytes", memory.hostBytes}};
+    return {{"gpu_bytes", memory.gpuBytes}, {"host_bytes", memory.hostBytes}};
 }
 
 json fieldsOf(const Build& build) {
-    json row{{"gpuBuildMs", timesOf(build.gpuMs)}};
+    json row{{"gpu_build_ms", timesOf(build.gpuMs)}};
     if (!build.gpuRefused.empty()) {
-        row["gpuRefused"] = build.gpuRefused;
+        row["gpu_refused"] = build.gpuRefused;
     }
     if (!build.refused.empty()) {
         row["refused"] = build.refused;
         return row;
     }
-    row.update({{"buildMs", timesOf(build.ms)},
-                {"updateMs", timesOf(build.updateMs)},
-                {"occupiedFraction", build.occupiedFraction}});
+    row.update({{"build_ms", timesOf(build.ms)},
+                {"update_ms", timesOf(build.updateMs)},
+                {"occupied_fraction", build.occupiedFraction}});
     row.update(fieldsOf(build.memory));
     return row;
 }
@@ -125,22 +125,22 @@ json fieldsOf(const Partitions& partitions) {
         return {{"refused", partitions.refused}};
     }
     json row = fieldsOf(partitions.memory);
-    row["initMs"] = partitions.initMs;
+    row["init_ms"] = partitions.initMs;
     return row;
 }
 
 json fieldsOf(const Transfer& transfer) {
-    return {{"tf", transfer.key}, {"tfName", transfer.name}};
+    return {{"tf", transfer.key}, {"tf_name", transfer.name}};
 }
 
 json fieldsOf(const Rebuild& rebuild) {
-    return {{"buildMs", timesOf(rebuild.ms)}, {"ofRangesMs", timesOf(rebuild.ofRangesMs)}};
+    return {{"build_ms", timesOf(rebuild.ms)}, {"of_ranges_ms", timesOf(rebuild.ofRangesMs)}};
 }
 
 json fieldsOf(const Merge& merge) {
-    return {{"updateMs", timesOf(merge.ms)},
+    return {{"update_ms", timesOf(merge.ms)},
             {"speedup", merge.speedup},
-            {"speedupOfRanges", merge.speedupOfRanges}};
+            {"speedup_of_ranges", merge.speedupOfRanges}};
 }
 
 json fieldsOf(const Row& row) {
@@ -166,7 +166,7 @@ json fieldsOf(const Row& row) {
         all["mode"] = row.mode;
     }
     if (row.finalsOf) {
-        all["finalsOf"] = name(*row.finalsOf);
+        all["finals_of"] = name(*row.finalsOf);
     }
     if (row.leastMs) {
         all["ms"] = *row.leastMs;
@@ -182,10 +182,10 @@ json fieldsOf(const VolumeRecord& record) {
     volume.update({{"name", record.name},
                    {"input", record.input},
                    {"modality", name(record.info.modality)},
-                   {"transferFunction", record.transferFunction},
-                   {"texelFormat", name(record.texelFormat)},
-                   {"texelBytes", record.texelBytes},
-                   {"codesMs", record.codesMs}});
+                   {"transfer_function", record.transferFunction},
+                   {"texel_format", name(record.texelFormat)},
+                   {"texel_bytes", record.texelBytes},
+                   {"codes_ms", record.codesMs}});
     return volume;
 }
 
@@ -236,15 +236,15 @@ json conditionsOf(const Desc& desc) {
     const Settings& s = stage.settings;
     return {{"size", {stage.size.x, stage.size.y}},
             {"camera", {camera.azimuthDegrees, camera.elevationDegrees, camera.distanceRadii}},
-            {"fovDegrees", stage.fovDegrees},
-            {"layerSpacingVoxels", s.layerSpacingVoxels},
+            {"fov_degrees", stage.fovDegrees},
+            {"layer_spacing_voxels", s.layerSpacingVoxels},
             {"lattice", name(s.lattice)},
             {"target", name(s.target)},
             {"space", name(s.space)},
             {"classification", name(s.classification)},
             {"termination", s.termination ? json(*s.termination) : json("off")},
-            {"framesPerRowAtMost", desc.frames},
-            {"partitionBudgetBytes", stage.settings.skipOptions.memoryBudgetBytes},
+            {"frames_per_row_at_most", desc.frames},
+            {"partition_budget_bytes", stage.settings.skipOptions.memoryBudgetBytes},
             {"sizes", desc.sizes},
             {"quick", desc.quick}};
 }

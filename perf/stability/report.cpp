@@ -29,8 +29,8 @@ json toJson(const Series& series) {
     json result = {{"group", series.group},
                    {"x", series.x},
                    {"y", finite(series.y)},
-                   {"xLabel", series.xLabel},
-                   {"yLabel", series.yLabel}};
+                   {"x_label", series.xLabel},
+                   {"y_label", series.yLabel}};
     if (!series.panel.empty()) {
         result["panel"] = series.panel;
     }
@@ -39,14 +39,14 @@ json toJson(const Series& series) {
 
 json toJson(const LeftOut& leftOut) {
     return {{"plan", leftOut.plan},
-            {"activeUniforms", leftOut.activeUniforms},
+            {"active_uniforms", leftOut.activeUniforms},
             {"samplers", leftOut.samplers},
             {"fragments", leftOut.fragments},
             {"layers", leftOut.layers},
-            {"volumeAndSkipBytes", leftOut.volumeAndSkipBytes},
-            {"timedFrames", leftOut.timedFrames},
-            {"leastFrameMs", leftOut.leastFrameMs},
-            {"leastFrameMsWithAll", leftOut.leastFrameMsWithAll}};
+            {"volume_and_skip_bytes", leftOut.volumeAndSkipBytes},
+            {"timed_frames", leftOut.timedFrames},
+            {"least_frame_ms", leftOut.leastFrameMs},
+            {"least_frame_ms_with_all", leftOut.leastFrameMsWithAll}};
 }
 
 /// "stiff_one-unit-step-slicing-rgba8_0.png": letters, digits and points of the name.
@@ -85,7 +85,7 @@ Result<json> written(const Case& c, ReportFolder& folder) {
         result["series"] = toJson(*c.series);
     }
     if (c.leftOut) {
-        result["leftOut"] = toJson(*c.leftOut);
+        result["left_out"] = toJson(*c.leftOut);
     }
     for (std::size_t k = 0; k < c.pictures.size(); ++k) {
         const std::string file = pictureFile(c, k);

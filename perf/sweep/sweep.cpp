@@ -85,13 +85,13 @@ Result<json> measureRow(Stage& stage, const Settings& settings, int frames,
         {"lattice", name(plan->lattice.kind)},
         {"jitter", plan->lattice.jittered},
         {"planes", plan->planes},
-        {"layersPerPlane", plan->layersPerPlane},
+        {"layers_per_plane", plan->layersPerPlane},
         {"form", plan->variant.unroll > 0 ? "unrolled" : "loop"},
         {"skip", name(plan->skip)},
         {"tighten", plan->tighten},
-        {"frameMs", toJson(turn->times)},
+        {"frame_ms", toJson(turn->times)},
         {"counters", toJson(stage.countWork(*plan))},
-        {"compileMs", compileMs},
+        {"compile_ms", compileMs},
         {"variant", name(plan->variant)},
         {"thumbnail", thumbnailFile}};
 }
@@ -103,19 +103,19 @@ json conditions(const Stage& stage, int frames) {
     const int total = totalLayers(s, facts);
     return {{"size", {o.size.x, o.size.y}},
             {"camera", toJson(o.camera)},
-            {"fovDegrees", o.fovDegrees},
-            {"transferFunction", stage.scene().look().tf.name},
+            {"fov_degrees", o.fovDegrees},
+            {"transfer_function", stage.scene().look().tf.name},
             {"classification", name(s.classification)},
             {"space", name(s.space)},
             {"target", name(s.target)},
             {"shade", get(s, "shade")},
             {"termination", s.termination ? fixed(*s.termination, 4) : "off"},
             {"lattice", name(s.lattice)},
-            {"layerSpacingMm", s.totalLayers ? 2.0 * facts.sphere.radiusMm / total
-                                             : s.layerSpacingVoxels * facts.smallestVoxelEdgeMm},
-            {"totalLayers", total},
+            {"layer_spacing_mm", s.totalLayers ? 2.0 * facts.sphere.radiusMm / total
+                                               : s.layerSpacingVoxels * facts.smallestVoxelEdgeMm},
+            {"total_layers", total},
             {"tighten", s.tighten},
-            {"framesPerRow", frames},
+            {"frames_per_row", frames},
             {"views", o.stereoIpdMm ? 2 : 1}};
 }
 
@@ -125,22 +125,22 @@ json header(const Stage& stage, int frames, const RunInfo& run) {
     const BuiltSkip& skip = stage.scene().skip();
     json result = reportHeader(run, stage);
     result["conditions"] = conditions(stage, frames);
-    result["memory"] = {{"peakHostBytes", run.peakHostBytes ? run.peakHostBytes() : 0},
-                        {"volumeBytes", stage.info().bytes},
-                        {"textureBytes", gpu.volumeBytes},
-                        {"skipBytes", gpuBytes(skip)}};
+    result["memory"] = {{"peak_host_bytes", run.peakHostBytes ? run.peakHostBytes() : 0},
+                        {"volume_bytes", stage.info().bytes},
+                        {"texture_bytes", gpu.volumeBytes},
+                        {"skip_bytes", gpuBytes(skip)}};
     if (skip.exists()) {
-        result["skipBuild"] = {{"structure", name(skip.options.structure)},
-                               {"blockEdge", skip.options.blockEdgeVoxels},
-                               {"builder", skip.onGpu ? "gpu" : "cpu"},
-                               {"ms", skip.buildMs},
-                               {"occupiedFraction", skip.occupiedFraction}};
+        result["skip_build"] = {{"structure", name(skip.options.structure)},
+                                {"block_edge", skip.options.blockEdgeVoxels},
+                                {"builder", skip.onGpu ? "gpu" : "cpu"},
+                                {"ms", skip.buildMs},
+                                {"occupied_fraction", skip.occupiedFraction}};
     }
     return result;
 }
 
 constexpr CsvColumn kColumns[] = {{"planes", "/planes"},
-                                  {"layersPerPlane", "/layersPerPlane"},
+                                  {"layers_per_plane", "/layers_per_plane"},
                                   {"form", "/form"},
                                   {"skip", "/skip"},
                                   {"tighten", "/tighten"},
@@ -149,7 +149,7 @@ constexpr CsvColumn kColumns[] = {{"planes", "/planes"},
                                   {"lattice", "/lattice"},
                                   {"jitter", "/jitter"},
                                   {"variant", "/variant"},
-                                  {"compileMs", "/compileMs"}};
+                                  {"compile_ms", "/compile_ms"}};
 
 std::string twoDigits(std::size_t index) {
     return (index < 10 ? "0" : "") + std::to_string(index);

@@ -63,9 +63,9 @@ class Accuracy(CliTest):
             self.assertTrue(self.report[key], key)
         for row in self.rows():
             self.assertEqual(row["ratio"], {1: "slicing", 0: "ray casting"}[row["layers"]])
-            self.assertEqual(row["frameMs"]["n"], 3)
+            self.assertEqual(row["frame_ms"]["n"], 3)
             self.assertTrue(self.report["started"] <= row["date"] <= self.report["date"])
-            self.assertGreater(row["counters"]["volumeFetches"], 0)
+            self.assertGreater(row["counters"]["volume_fetches"], 0)
             for picture in ("thumbnail", "difference"):
                 files.Png((self.measured / "err" / row["pictures"][picture]).read_bytes())
         with open(self.measured / "err" / "error.csv", newline="", encoding="utf-8") as file:
@@ -102,8 +102,8 @@ class Accuracy(CliTest):
         self.assertGreater(gpu[-1], 2 * gpu[0])
 
     def test_fronts_hold_what_nothing_beats(self):
-        costs = {"front": lambda row: row["frameMs"]["median"],
-                 "frontByFetches": lambda row: row["counters"]["volumeFetches"] + row["counters"]["skipFetches"]}
+        costs = {"front": lambda row: row["frame_ms"]["median"],
+                 "front_by_fetches": lambda row: row["counters"]["volume_fetches"] + row["counters"]["skip_fetches"]}
         for name, cost in costs.items():
             places = [(cost(row), row["error"]["total"]["rmse"]) for row in self.rows()]
 
@@ -190,7 +190,7 @@ class Accuracy(CliTest):
 
         def spoilt(**members):
             return "\n".join((key, json.dumps({**measured, **members}), *others))
-        stores = (spoilt(frameMs=3), spoilt(frameMs={"median": "3"}), spoilt(pictures={"thumbnail": 1}),
+        stores = (spoilt(frame_ms=3), spoilt(frame_ms={"median": "3"}), spoilt(pictures={"thumbnail": 1}),
                   spoilt(pictures=[]), spoilt(error=None), spoilt(counters={}), spoilt(spacing="1"), spoilt(id=1),
                   spoilt(date=None), "\n".join((key, "7", first)), "7\n" + first, "", "{\n")
         headers = (json.dumps({**json.loads(header), "seconds": "1"}).encode(), b"[]", b"", header)
@@ -215,11 +215,11 @@ class Accuracy(CliTest):
         self.succeeds(*self.one_row(*too_much, classify="preclassified,post"), env=self.own_cache(), notes=self.PAGE)
         report = self.new_report()
         self.assertEqual([row["classification"] for row in report["rows"]], ["post"])
-        (left,) = report["leftOut"]
+        (left,) = report["left_out"]
         self.assertEqual(left["classification"], "preclassified")
         self.assertRegex(left["why"], "442368 bytes.*--downsample 2")
         self.assertIn("442368 bytes", (self.folder / "err" / "report.html").read_text())
-        self.assertEqual(self.report["leftOut"], [])
+        self.assertEqual(self.report["left_out"], [])
         shutil.rmtree(self.folder / "err")
         run = self.run_cli(*self.one_row(*too_much, classify="preclassified"), env=self.own_cache())
         self.assertEqual(run.returncode, 1)
@@ -276,7 +276,7 @@ class Accuracy(CliTest):
         scene = ("render", "phantom:marschner-lobb:32", "-o", "p.png", "--size", "48x48", "--explain", "--verify")
         target = 1.5 * min(row["error"]["total"]["rmse"] for row in self.rows())
         reach = [row for row in self.rows() if row["error"]["total"]["rmse"] <= target]
-        best = min(reach, key=lambda row: row["frameMs"]["median"])
+        best = min(reach, key=lambda row: row["frame_ms"]["median"])
         text = self.succeeds(*scene, "--target-error", repr(target), env=self.env)
         self.assertRegex(text, rf"(?m)^target error .*{best['target']}, a layer every {best['spacing']:g} voxels, .*"
                                r"measured with this volume and transfer function$")

@@ -71,7 +71,7 @@ class Pictures(CliTest):
 
     def test_the_first_of_many_frames_is_written(self):
         one = self.picture(PHANTOM, *QUICK)
-        self.assertEqual(self.stats(PHANTOM, *QUICK, "--frames", "3")["frameMs"]["n"], 3)
+        self.assertEqual(self.stats(PHANTOM, *QUICK, "--frames", "3")["frame_ms"]["n"], 3)
         self.assertEqual((self.folder / "p.png").read_bytes(), one)
 
     def test_turning_the_camera_changes_the_picture(self):
@@ -148,11 +148,11 @@ class Inputs(CliTest):
 class Statistics(CliTest):
     KEYS = {
         "device": {"renderer", "vendor", "version", "software"},
-        "plan": {"planes", "layers", "layersPerPlane", "termination", "order", "planesPerMark", "variant", "reasons"},
-        "frameMs": {"median", "min", "max", "n"},
-        "counters": {"fragments", "layersEvaluated", "layersSkipped", "volumeFetches", "skipFetches", "stretches",
-                     "blocksVisited"},
-        "volume": {"name", "dims", "type", "spacingMm", "bytes"},
+        "plan": {"planes", "layers", "layers_per_plane", "termination", "order", "planes_per_mark", "variant", "reasons"},
+        "frame_ms": {"median", "min", "max", "n"},
+        "counters": {"fragments", "layers_evaluated", "layers_skipped", "volume_fetches", "skip_fetches", "stretches",
+                     "blocks_visited"},
+        "volume": {"name", "dims", "type", "spacing_mm", "bytes"},
     }
 
     def test_keys_are_stable(self):
@@ -160,10 +160,10 @@ class Statistics(CliTest):
         for part, keys in self.KEYS.items():
             self.assertLessEqual(keys, set(stats[part]), part)
         plan = stats["plan"]
-        self.assertEqual((plan["planes"], plan["layersPerPlane"], plan["layers"]), (4, 4, 16))
+        self.assertEqual((plan["planes"], plan["layers_per_plane"], plan["layers"]), (4, 4, 16))
         self.assertEqual(stats["volume"]["dims"], [24, 24, 24])
         self.assertEqual(stats["volume"]["bytes"], 24 ** 3)
-        times = stats["frameMs"]
+        times = stats["frame_ms"]
         self.assertTrue(0 < times["min"] <= times["median"] <= times["max"])
 
     def test_every_key_is_documented(self):
@@ -183,7 +183,7 @@ class Statistics(CliTest):
         orders = {order: self.stats(*dense, "--order", order) for order in ("back-to-front", "front-to-back", "auto")}
         for order in ("back-to-front", "front-to-back"):
             self.assertEqual(orders[order]["plan"]["order"], order)
-        counts = {order: stats["counters"]["layersEvaluated"] for order, stats in orders.items()}
+        counts = {order: stats["counters"]["layers_evaluated"] for order, stats in orders.items()}
         self.assertLess(counts["front-to-back"], 0.9 * counts["back-to-front"])
         self.assertEqual(counts["auto"], counts[orders["auto"]["plan"]["order"]])
         self.assertEqual(self.stats(*self.sparse(), "--termination", "off")["plan"]["order"], "back-to-front")
@@ -192,9 +192,9 @@ class Statistics(CliTest):
         sparse = (*self.sparse(), "--termination", "off")
         without = self.stats(*sparse, "--skip", "none")["counters"]
         skipping = self.stats(*sparse, "--skip", "proximity")["counters"]
-        self.assertEqual((without["layersSkipped"], without["skipFetches"]), (0, 0))
-        self.assertGreater(skipping["layersSkipped"], 0)
-        self.assertLess(skipping["layersEvaluated"], without["layersEvaluated"])
+        self.assertEqual((without["layers_skipped"], without["skip_fetches"]), (0, 0))
+        self.assertGreater(skipping["layers_skipped"], 0)
+        self.assertLess(skipping["layers_evaluated"], without["layers_evaluated"])
 
     def test_explain_gives_reasons_and_the_measured_ratio_is_the_fastest(self):
         text = self.succeeds("render", PHANTOM, "-o", "p.png", "--size", "64x64", "--layers", "16", "--explain")
@@ -219,13 +219,13 @@ class Sweep(CliTest):
         for key in ("command", "commit", "date", "device", "volume", "conditions", "memory"):
             self.assertTrue(sweep[key], key)
         self.assertEqual(odd_keys(sweep), [])
-        total = sweep["conditions"]["totalLayers"]
+        total = sweep["conditions"]["total_layers"]
         for skip in ("none", "proximity"):
-            self.assertEqual({row["layersPerPlane"] for row in rows if row["skip"] == skip}, {*self.LAYERS, total})
+            self.assertEqual({row["layers_per_plane"] for row in rows if row["skip"] == skip}, {*self.LAYERS, total})
         for row in rows:
-            self.assertGreaterEqual(row["planes"] * row["layersPerPlane"], total)
-            self.assertEqual(row["frameMs"]["n"], 2)
-            self.assertAlmostEqual(row["frameMs"]["median"], (row["frameMs"]["min"] + row["frameMs"]["max"]) / 2)
+            self.assertGreaterEqual(row["planes"] * row["layers_per_plane"], total)
+            self.assertEqual(row["frame_ms"]["n"], 2)
+            self.assertAlmostEqual(row["frame_ms"]["median"], (row["frame_ms"]["min"] + row["frame_ms"]["max"]) / 2)
             self.assertIs(row["jitter"], False)
             self.assertTrue((folder / row["thumbnail"]).is_file())
 
@@ -233,10 +233,10 @@ class Sweep(CliTest):
             table = list(csv.DictReader(file))
         self.assertEqual(len(table), len(rows))
         for line, row in zip(table, rows):
-            self.assertEqual((int(line["planes"]), int(line["layersPerPlane"]), line["skip"]),
-                             (row["planes"], row["layersPerPlane"], row["skip"]))
-            self.assertEqual(int(line["layers_evaluated"]), row["counters"]["layersEvaluated"])
-            self.assertEqual((float(line["frame_ms_median"]), line["jitter"]), (row["frameMs"]["median"], "false"))
+            self.assertEqual((int(line["planes"]), int(line["layers_per_plane"]), line["skip"]),
+                             (row["planes"], row["layers_per_plane"], row["skip"]))
+            self.assertEqual(int(line["layers_evaluated"]), row["counters"]["layers_evaluated"])
+            self.assertEqual((float(line["frame_ms_median"]), line["jitter"]), (row["frame_ms"]["median"], "false"))
 
         page = folder / "report.html"
         self.assertEqual(re.findall(r"""(?:src|href)\s*=\s*["'](?!data:|#)[^"']*""", page.read_text()), [])

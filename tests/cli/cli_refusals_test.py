@@ -205,7 +205,7 @@ class BadDevices(CliTest):
         self.picture(*budget, *QUICK)
         pre = (*budget, "--classify", "preclassified")
         self.render_fails(*pre, cause="442368 bytes.*209715", remedy="--downsample 2$")
-        self.assertEqual(self.stats(*pre, *QUICK, "--downsample", "2")["memory"]["gpuVolumeBytes"], 55296)
+        self.assertEqual(self.stats(*pre, *QUICK, "--downsample", "2")["memory"]["gpu_volume_bytes"], 55296)
 
 
 if __name__ == "__main__":

@@ -22,9 +22,9 @@ EDGES = {"blocks": (1, 2, 4, 8, 16, 32), **dict.fromkeys(GRIDS[1:], (1, 2, 4, 8)
 PARAMETERS = {
     "--skip-bits": ("64", "bits", 64, ("bitfield-octree",)),
     "--partitions": ("32", "partitions", 32, ("partitioned",)),
-    "--separate-minimum": ("on", "separateMinimum", True, ("partitioned", "bitfield-octree")),
-    "--value-range": ("10,200", "valueRange", [10, 200], ("partitioned", "bitfield-octree")),
-    "--initial-level": ("1", "initialLevel", 1, OCTREES),
+    "--separate-minimum": ("on", "separate_minimum", True, ("partitioned", "bitfield-octree")),
+    "--value-range": ("10,200", "value_range", [10, 200], ("partitioned", "bitfield-octree")),
+    "--initial-level": ("1", "initial_level", 1, OCTREES),
     "--traversal": ("top-down", "traversal", "top-down", OCTREES),
 }
 
@@ -95,20 +95,20 @@ class Told(CliTest):
                                   *words)["skip"]
                 self.assertEqual(skip["structure"], structure)
                 self.assertEqual(skip["parameters"],
-                                 {"blockEdge": 8, **{key: value for _, key, value, _ in mine.values()}})
+                                 {"block_edge": 8, **{key: value for _, key, value, _ in mine.values()}})
                 self.assertEqual((skip["builder"], skip["skips"], skip["tightens"]), ("cpu", True, True))
-                self.assertGreater(skip["buildMs"], 0)
-                self.assertGreater(skip["gpuBytes"], 0)
+                self.assertGreater(skip["build_ms"], 0)
+                self.assertGreater(skip["gpu_bytes"], 0)
                 # The host keeps a byte per block and partition: 3 blocks along each axis.
-                self.assertEqual(skip["hostBytes"], 27 * 32 if structure == "partitioned" else 0)
-                self.assertTrue(0 < skip["occupiedFraction"] <= 1)
+                self.assertEqual(skip["host_bytes"], 27 * 32 if structure == "partitioned" else 0)
+                self.assertTrue(0 < skip["occupied_fraction"] <= 1)
 
     def test_occupied_fraction_is_that_of_the_blocks(self):
         """A voxel of 16 x 8 x 8, in its corner: of two blocks of 8, the one is occupied."""
         self.write("v.nrrd", files.nrrd("16 8 8", data=bytes([255] + [0] * 1023)))
         self.write("tf.json", json.dumps({"points": [{**POINT, "value": 100, "opacity": 0}, {**POINT, "value": 255}]}))
         skip = self.stats("v.nrrd", "--tf", "tf.json", *QUICK, "--skip", "blocks", "--skip-block", "8")["skip"]
-        self.assertEqual(skip["occupiedFraction"], 0.5)
+        self.assertEqual(skip["occupied_fraction"], 0.5)
 
     def test_without_skipping_blocks_tighten_planes_or_nothing_is_built(self):
         skip = self.stats(PHANTOM, *QUICK, "--skip", "none")["skip"]
@@ -133,7 +133,7 @@ class Told(CliTest):
                              text)
         self.assertIsNotNone(occupied, text)
         skip = self.stats(*self.sparse())["skip"]
-        self.assertAlmostEqual(float(occupied[1]), 100 * skip["occupiedFraction"], delta=0.05)
+        self.assertAlmostEqual(float(occupied[1]), 100 * skip["occupied_fraction"], delta=0.05)
         slices = self.succeeds(*sparse[:-3], "--layers-per-plane", "2", "--explain")
         self.assertRegex(slices, r"(?m)^skip none: auto: planes of 2 layers \(.* pays from 4 on")
         self.write("full.json", json.dumps({"points": [POINT]}))

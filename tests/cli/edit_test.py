@@ -19,12 +19,12 @@ from report_keys import key_of, odd_keys  # noqa: E402
 
 SLABCAST = None  # the program, from the command line
 SMALL = ("phantom:vessels:32", "--size", "48x40", "--layers-per-plane", "16", "--octree-frames", "1")
-KEYS = {"frame", "step", "edit", "progress", "structure", "frameMs", "parts", "octreeMs", "overOctree", "naiveMs",
+KEYS = {"frame", "step", "edit", "progress", "structure", "frame_ms", "parts", "octree_ms", "over_octree", "naive_ms",
         "counters"}
-SUMMARY = {"comparedWith", "worstOverOctreeFrame", "overOctreeFrame", "worstAddedOverOctreeFrame",
-           "worstOctreeFrameOverMedian", "worstOfSingleReplays", "frames", "edits", "budgetMs",
-           "framesOverBudget", "frameMs", "editFrameMs", "editMs", "octreeFrameMs", "naive",
-           "framesByStructure", "handOvers"}
+SUMMARY = {"compared_with", "worst_over_octree_frame", "over_octree_frame", "worst_added_over_octree_frame",
+           "worst_octree_frame_over_median", "worst_of_single_replays", "frames", "edits", "budget_ms",
+           "frames_over_budget", "frame_ms", "edit_frame_ms", "edit_ms", "octree_frame_ms", "naive",
+           "frames_by_structure", "hand_overs"}
 BONE = {"points": [{"value": 100, "color": [1, 1, 1], "opacity": 0}, {"value": 200, "color": [1, 0.5, 0], "opacity": 0.5}]}
 
 
@@ -64,8 +64,8 @@ class UsualEditsTest(unittest.TestCase):
     def test_every_frame_is_as_from_scratch(self):
         self.assertEqual(self.run_.returncode, 0, self.run_.stderr)
         self.assertEqual([row["frame"] for row in self.rows if not row["equal"]], [])
-        self.assertEqual(self.summary["framesEqual"], len(self.rows))
-        self.assertEqual(self.summary["framesToCorrect"], 1)
+        self.assertEqual(self.summary["frames_equal"], len(self.rows))
+        self.assertEqual(self.summary["frames_to_correct"], 1)
 
     def test_keys(self):
         self.assertLessEqual({"command", "commit", "date", "device", "volume", "conditions", "builds"},
@@ -89,13 +89,13 @@ class UsualEditsTest(unittest.TestCase):
         self.assertEqual({row["step"] for row in self.rows}, {"interpolate", "pause", "jump", "opacity", "random"})
 
     def test_worst_frame_is_the_worst(self):
-        worst = max(row["frameMs"] / row["octreeMs"] for row in self.rows)
-        self.assertAlmostEqual(self.summary["worstOverOctreeFrame"], worst, places=9)
-        over = sum(row["frameMs"] > self.summary["budgetMs"] for row in self.rows)
-        self.assertEqual(self.summary["framesOverBudget"], over)
+        worst = max(row["frame_ms"] / row["octree_ms"] for row in self.rows)
+        self.assertAlmostEqual(self.summary["worst_over_octree_frame"], worst, places=9)
+        over = sum(row["frame_ms"] > self.summary["budget_ms"] for row in self.rows)
+        self.assertEqual(self.summary["frames_over_budget"], over)
 
     def test_hands_over_when_edits_pause(self):
-        self.assertGreaterEqual(self.summary["handOvers"], 1)
+        self.assertGreaterEqual(self.summary["hand_overs"], 1)
         structures = {row["structure"] for row in self.rows}
         self.assertLessEqual({"bitfield-octree", "proximity"}, structures)
         for row in self.rows:
@@ -139,10 +139,10 @@ class ScriptTest(Folder):
         self.assertEqual(run.returncode, 0, run.stderr)
         report = self.report()
         for row in report["rows"]:
-            self.assertEqual(set(row["parts"]), {"editMs", "workMs", "prepareMs", "drawMs"})
-            self.assertAlmostEqual(row["frameMs"], sum(row["parts"].values()), places=9)
-        worst = max(row["frameMs"] / row["octreeMs"] for row in report["rows"])
-        self.assertAlmostEqual(report["summary"]["worstOfSingleReplays"], worst, places=9)
+            self.assertEqual(set(row["parts"]), {"edit_ms", "work_ms", "prepare_ms", "draw_ms"})
+            self.assertAlmostEqual(row["frame_ms"], sum(row["parts"].values()), places=9)
+        worst = max(row["frame_ms"] / row["octree_ms"] for row in report["rows"])
+        self.assertAlmostEqual(report["summary"]["worst_of_single_replays"], worst, places=9)
 
     def test_structures_are_as_asked(self):
         run = edit(*SMALL, "--interpolate", "linear,angio", "--frames", 20, "--skip", "minmax-octree", "--classify",
@@ -151,9 +151,9 @@ class ScriptTest(Folder):
         report = self.report()
         self.assertEqual(report["builds"]["always"]["structure"], "minmax-octree")
         self.assertNotIn("settled", report["builds"])
-        self.assertEqual(report["summary"]["comparedWith"], "minmax-octree")
+        self.assertEqual(report["summary"]["compared_with"], "minmax-octree")
         self.assertIn("by the min-max octree at rest", (self.out / "report.html").read_text(encoding="utf-8"))
-        self.assertEqual(report["summary"]["framesEqual"], 20)
+        self.assertEqual(report["summary"]["frames_equal"], 20)
 
 
     def test_what_changes_nothing_is_no_edit(self):
@@ -176,11 +176,11 @@ class ScriptTest(Folder):
         run = edit(*SMALL, "--interpolate", "linear,linear", "--frames", 20, "--verify", "--out", self.out)
         self.assertEqual(run.returncode, 0, run.stderr)
         summary = self.report()["summary"]
-        self.assertEqual((summary["edits"], summary["framesEqual"]), (0, 20))
-        for empty in (summary["editFrameMs"], summary["editMs"], summary["naive"]["editFrameMs"],
-                      summary["framesToCorrect"]):
+        self.assertEqual((summary["edits"], summary["frames_equal"]), (0, 20))
+        for empty in (summary["edit_frame_ms"], summary["edit_ms"], summary["naive"]["edit_frame_ms"],
+                      summary["frames_to_correct"]):
             self.assertIsNone(empty)
-        self.assertGreater(summary["worstOverOctreeFrame"], 0)
+        self.assertGreater(summary["worst_over_octree_frame"], 0)
 
 
 class RefusalTest(Folder):

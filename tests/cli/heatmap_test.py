@@ -21,8 +21,8 @@ SIZE = ("--size", f"{WIDTH}x{HEIGHT}")
 SCENE = ("phantom:shells:32", "--camera", "20,10,4", "--layers-per-plane", "4", "--form", "loop")
 # One dot per pixel: a margin, 7 rows of text, a margin.
 STRIP = HEIGHT - 7 - 2 * 4
-SUMS = {"iterations": ("stretches", "layersEvaluated"), "fetches": ("volumeFetches", "skipFetches"),
-        "layers": ("layersEvaluated",)}
+SUMS = {"iterations": ("stretches", "layers_evaluated"), "fetches": ("volume_fetches", "skip_fetches"),
+        "layers": ("layers_evaluated",)}
 LIGHTNESS_ERROR = 0.4  # of a colour in 8 bits: most at black, where a step of 1/255 is 0.27 (CIE 15)
 
 

@@ -25,13 +25,13 @@ MODES = ["marching only", "early exit", "shading"]
 PARTITIONS = [16, 32, 64, 128, 256]
 TRANSFERS = ["TF1", "TF2", "TF3", "TF4", "TF5", "TF6"]
 KEYS = {"command", "commit", "date", "device", "conditions", "volumes", "figures", "papers", "rows", "summary"}
-FIGURES = {"distanceMapMarchingOnlySpeedup", "distanceMapEarlyExitSpeedup",
-           "bitfieldOctreeOverDistanceMapTime", "bitfieldOctreeOverMinmaxOctreeTime",
-           "bitfieldOctreeOverMinmaxOctreeBlocksVisited", "bitfieldOctreeOverMinmaxOctreeBlocksLookedAt",
-           *(f"hybrid{mode}{planes}Speedup" for mode in ("EarlyExit", "MarchingOnly")
-             for planes in ("Rectangles", "Sphere", "Structure")),
-           *(f"merge16SpeedupEdge{edge}" for edge in (4, 2, 1)),
-           "bitfieldOctree256BuildMs", "bitfieldOctree256MemoryShare"}
+FIGURES = {"distance_map_marching_only_speedup", "distance_map_early_exit_speedup",
+           "bitfield_octree_over_distance_map_time", "bitfield_octree_over_minmax_octree_time",
+           "bitfield_octree_over_minmax_octree_blocks_visited", "bitfield_octree_over_minmax_octree_blocks_looked_at",
+           *(f"hybrid_{mode}_{planes}_speedup" for mode in ("early_exit", "marching_only")
+             for planes in ("rectangles", "sphere", "structure")),
+           *(f"merge_16_speedup_edge_{edge}" for edge in (4, 2, 1)),
+           "bitfield_octree_256_build_ms", "bitfield_octree_256_memory_share"}
 BUDGET_MIB = 0.03  # 27,648 bytes fit (6^3 blocks x 128, 12^3 x 16), 55,296 do not
 
 
@@ -87,12 +87,12 @@ class SmallRunTest(unittest.TestCase):
         for entry in self.report["figures"]:
             self.assertEqual(figures[entry["key"]], {k: entry[k] for k in ("value", "goal", "sense", "reached")})
         # What was not measured is null, not 0: refused partitions, a size that was not asked for.
-        for name in ("merge16SpeedupEdge1", "bitfieldOctree256BuildMs", "bitfieldOctree256MemoryShare"):
+        for name in ("merge_16_speedup_edge_1", "bitfield_octree_256_build_ms", "bitfield_octree_256_memory_share"):
             self.assertIsNone(figures[name]["value"], name)
             self.assertIsNone(figures[name]["reached"], name)
 
     def test_the_phantom_is_shown_by_its_own_preset(self):
-        self.assertEqual([v["transferFunction"] for v in self.report["volumes"]], ["Gap"])
+        self.assertEqual([v["transfer_function"] for v in self.report["volumes"]], ["Gap"])
 
     def test_every_structure_in_every_mode(self):
         for mode in MODES:
@@ -103,8 +103,8 @@ class SmallRunTest(unittest.TestCase):
             rows = self.of("frames", family=family, mode=mode)
             self.assertEqual({row["structure"] for row in rows}, set(STRUCTURES), family)
             self.assertEqual(rows[0]["structure"], "none")
-        self.assertEqual({row["layersPerPlane"] for row in self.of("frames", family="slicing")}, {1})
-        for name in ("layersEvaluated", "volumeFetches", "skipFetches", "stretches", "blocksVisited"):
+        self.assertEqual({row["layers_per_plane"] for row in self.of("frames", family="slicing")}, {1})
+        for name in ("layers_evaluated", "volume_fetches", "skip_fetches", "stretches", "blocks_visited"):
             self.assertTrue(all(name in row["counters"] for row in self.of("frames")), name)
 
     def test_speedups_are_those_of_the_samples(self):
@@ -112,12 +112,12 @@ class SmallRunTest(unittest.TestCase):
             for mode in MODES:
                 rows = self.of("frames", family=family, mode=mode)
                 for row in rows:
-                    self.assertEqual(len(row["samples"]), row["frameMs"]["n"])
-                    self.assertAlmostEqual(row["frameMs"]["median"], statistics.median(row["samples"]))
+                    self.assertEqual(len(row["samples"]), row["frame_ms"]["n"])
+                    self.assertAlmostEqual(row["frame_ms"]["median"], statistics.median(row["samples"]))
                     self.assertAlmostEqual(row["speedup"], paired(rows[0], row), places=9)
 
     def test_equal_parameters_skip_equally_much_where_nothing_lies_between(self):
-        layers = {row["structure"]: row["counters"]["layersEvaluated"] for row in self.of("work")}
+        layers = {row["structure"]: row["counters"]["layers_evaluated"] for row in self.of("work")}
         self.assertEqual(list(layers), STRUCTURES)
         # Exact ones of blocks of 4 voxels agree; the TF as one range, or bin by bin, never shows less.
         for name in ("proximity", "chebyshev", "boolean-octree"):
@@ -128,7 +128,7 @@ class SmallRunTest(unittest.TestCase):
 
     def test_the_best_was_searched_for(self):
         for structure in OCTREES:
-            tried = [tuple(row.get(k) for k in ("blockEdge", "bits", "initialLevel", "traversal"))
+            tried = [tuple(row.get(k) for k in ("block_edge", "bits", "initial_level", "traversal"))
                      for row in self.of("search", structure=structure)]
             self.assertEqual(len(tried), len(set(tried)))
             self.assertGreaterEqual(len(tried), 4)
@@ -136,7 +136,7 @@ class SmallRunTest(unittest.TestCase):
             for mode in MODES[:2]:
                 fastest = max(self.of("finals", structure=structure, mode=mode), key=lambda row: row["speedup"])
                 drawn = self.one("frames", structure=structure, family="ray casting", mode=mode)
-                for key in ("blockEdge", "initialLevel", "traversal"):
+                for key in ("block_edge", "initial_level", "traversal"):
                     self.assertEqual(drawn[key], fastest[key], (structure, mode))
                     if mode == "marching only":
                         self.assertEqual(best[key], fastest[key], structure)
@@ -144,7 +144,7 @@ class SmallRunTest(unittest.TestCase):
     def test_finals_are_ratios_to_none(self):
         for structure in ["blocks", "proximity", "chebyshev", *OCTREES]:
             for mode in MODES[:2]:
-                rows = self.of("finals", finalsOf=structure, mode=mode)
+                rows = self.of("finals", finals_of=structure, mode=mode)
                 self.assertEqual([row["structure"] for row in rows], ["none"] + [structure] * (len(rows) - 1))
                 for row in rows:
                     self.assertAlmostEqual(row["speedup"], paired(rows[0], row), places=9)
@@ -152,44 +152,44 @@ class SmallRunTest(unittest.TestCase):
     def test_what_structures_take(self):
         for structure in STRUCTURES[1:]:
             row = self.one("structures", structure=structure)
-            for name in ("buildMs", "gpuBuildMs"):
+            for name in ("build_ms", "gpu_build_ms"):
                 self.assertGreater(row[name]["min"], 0)
                 self.assertLessEqual(row[name]["min"], row[name]["median"])
                 self.assertLessEqual(row[name]["median"], row[name]["max"])
                 self.assertIn(row[name]["n"], (1, 2, 3))
-            self.assertNotIn("gpuRefused", row)
-            self.assertGreater(row["gpuBytes"], 0)
-        self.assertGreater(self.one("structures", structure="partitioned")["hostBytes"], 0)
+            self.assertNotIn("gpu_refused", row)
+            self.assertGreater(row["gpu_bytes"], 0)
+        self.assertGreater(self.one("structures", structure="partitioned")["host_bytes"], 0)
 
     def test_partitions_over_the_budget_are_refused_with_what_they_need(self):
         for row in self.of("partitions"):
-            blocks = (24 // row["blockEdge"]) ** 3
+            blocks = (24 // row["block_edge"]) ** 3
             needed = blocks * row["partitions"]
             self.assertEqual("refused" in row, needed > BUDGET_MIB * 2 ** 20, row)
-            merges = self.of("merge", blockEdge=row["blockEdge"], partitions=row["partitions"])
+            merges = self.of("merge", block_edge=row["block_edge"], partitions=row["partitions"])
             if "refused" in row:
                 self.assertRegex(row["refused"], r"\d.*(MiB|KiB|bytes)")
                 self.assertEqual(merges, [])
             else:
-                self.assertEqual(row["hostBytes"], needed)
+                self.assertEqual(row["host_bytes"], needed)
                 self.assertEqual([m["tf"] for m in merges], TRANSFERS)
-        self.assertEqual([row["partitions"] for row in self.of("partitions", blockEdge=4)], PARTITIONS)
-        self.assertEqual({row["blockEdge"] for row in self.of("partitions") if "refused" in row}, {1, 4})
+        self.assertEqual([row["partitions"] for row in self.of("partitions", block_edge=4)], PARTITIONS)
+        self.assertEqual({row["block_edge"] for row in self.of("partitions") if "refused" in row}, {1, 4})
 
     def test_every_way_to_rebuild(self):
         for edge in (1, 2, 4):
             for structure in ("chebyshev", "proximity"):
-                rows = self.of("rebuild", blockEdge=edge, structure=structure)
+                rows = self.of("rebuild", block_edge=edge, structure=structure)
                 self.assertEqual([row["tf"] for row in rows], TRANSFERS)
-                self.assertTrue(all(row["buildMs"]["median"] > 0 and row["ofRangesMs"]["median"] > 0 for row in rows))
+                self.assertTrue(all(row["build_ms"]["median"] > 0 and row["of_ranges_ms"]["median"] > 0 for row in rows))
 
     def test_cost_against_size(self):
         for edge in (16, 24):
             rows = self.of("sizes", edge=edge)
             self.assertEqual([row["structure"] for row in rows], STRUCTURES)
-            self.assertEqual({row["volumeBytes"] for row in rows}, {2 * edge ** 3})
-        self.assertGreater(self.one("sizes", edge=24, structure="bitfield-octree")["gpuBytes"],
-                           self.one("sizes", edge=16, structure="bitfield-octree")["gpuBytes"])
+            self.assertEqual({row["volume_bytes"] for row in rows}, {2 * edge ** 3})
+        self.assertGreater(self.one("sizes", edge=24, structure="bitfield-octree")["gpu_bytes"],
+                           self.one("sizes", edge=16, structure="bitfield-octree")["gpu_bytes"])
 
     def test_figures_follow_from_rows(self):
         for mode in ("marching only", "early exit"):
@@ -201,7 +201,7 @@ class SmallRunTest(unittest.TestCase):
         fast = max((marching[s] for s in ("proximity", "chebyshev")), key=lambda row: row["speedup"])
         self.assertAlmostEqual(self.figure("bitfield octree against the distance map")["value"],
                                paired(marching["bitfield-octree"], fast))
-        visited = {s: self.one("work", structure=s)["counters"]["blocksVisited"] for s in OCTREES}
+        visited = {s: self.one("work", structure=s)["counters"]["blocks_visited"] for s in OCTREES}
         self.assertAlmostEqual(self.figure("blocks visited")["value"],
                                visited["bitfield-octree"] / visited["minmax-octree"])
         self.assertEqual(self.figure("blocks visited")["goal"], 0.6)
@@ -216,7 +216,7 @@ class SmallRunTest(unittest.TestCase):
                        key=lambda row: row["speedup"])
             self.assertAlmostEqual(self.figure("hybrid", "early exit", words)["value"],
                                    paired(hybrid[without_tight]["none"], best))
-        merges = [row["speedup"] for row in self.of("merge", blockEdge=4, partitions=16)]
+        merges = [row["speedup"] for row in self.of("merge", block_edge=4, partitions=16)]
         self.assertAlmostEqual(self.figure("merging 16", "blocks of 4")["value"], statistics.median(merges))
         self.assertIsNone(self.figure("merging 16", "blocks of 1")["value"])  # refused
 
@@ -240,7 +240,7 @@ class SmallRunTest(unittest.TestCase):
                 self.assertEqual(min(data[key]), data[key][1], data["name"])
             self.assertEqual(max(data["generation"]), data["generation"][0], data["name"])
         lungs = faludi["datasets"][0]
-        self.assertAlmostEqual(lungs["earlyExit"][3] / lungs["earlyExit"][4] - 1, 1.14, delta=0.005)  # "up to 114%"
+        self.assertAlmostEqual(lungs["early_exit"][3] / lungs["early_exit"][4] - 1, 1.14, delta=0.005)  # "up to 114%"
         # "up to factor 10 for 256 partitions and up to factor 30 for 16", a little more in the table itself
         update = [line for data in self.report["papers"]["rauter"]["datasets"] for line in data["update"]]
         self.assertEqual({len(line) for line in update}, {6})
@@ -257,7 +257,7 @@ class SmallRunTest(unittest.TestCase):
                               "refused", "frame_ms_median", "layers_evaluated", "blocks_visited"}, set(lines[0]))
         for line, row in zip(lines, self.rows):
             if row["table"] == "frames":
-                self.assertEqual(float(line["frame_ms_median"]), row["frameMs"]["median"])
+                self.assertEqual(float(line["frame_ms_median"]), row["frame_ms"]["median"])
 
 
 class RefusalTest(unittest.TestCase):

@@ -19,7 +19,7 @@ from report_keys import odd_keys  # noqa: E402
 
 SLABCAST = None  # the program, from the command line
 KEYS = {"family", "name", "quantity", "bound", "reason", "measured", "pass"}
-OPTIONAL_KEYS = {"failure", "pictures", "series", "leftOut"}
+OPTIONAL_KEYS = {"failure", "pictures", "series", "left_out"}
 FAMILIES = ["stiff", "extreme-data", "extreme-views", "extreme-plans", "in-time", "half-precision", "left-out"]
 METHODS = [f"{way}, {target}" for target in ("rgba8", "rgba16f") for way in ("slicing", "hybrid", "ray casting")]
 

@@ -23,33 +23,33 @@ def frame(i):
     """Sixty frames of edits, then a pause in which the map is rebuilt; again."""
     edited, settled = i % 60 < 45, i % 60 > 52
     octree = 8 + math.sin(i / 9)
-    parts = {"editMs": 0.7 if edited else 0.0, "workMs": 2.0 if 48 < i % 60 < 53 else 0.0, "prepareMs": 0.1,
-             "drawMs": octree * (0.8 if settled else 1)}
+    parts = {"edit_ms": 0.7 if edited else 0.0, "work_ms": 2.0 if 48 < i % 60 < 53 else 0.0, "prepare_ms": 0.1,
+             "draw_ms": octree * (0.8 if settled else 1)}
     return {"frame": i, "step": "interpolate" if edited else "pause", "edit": edited,
             "progress": "swapped" if i % 60 == 52 else "settled" if settled else "waiting",
-            "structure": "proximity" if settled else "bitfield-octree", "frameMs": sum(parts.values()), "parts": parts,
-            "octreeMs": octree, "naiveMs": 7 + (40 if edited else 0), "equal": True,
-            "counters": {"volumeFetches": 4e6, "skipFetches": 1e6 + 1e4 * i}}
+            "structure": "proximity" if settled else "bitfield-octree", "frame_ms": sum(parts.values()), "parts": parts,
+            "octree_ms": octree, "naive_ms": 7 + (40 if edited else 0), "equal": True,
+            "counters": {"volume_fetches": 4e6, "skip_fetches": 1e6 + 1e4 * i}}
 
 
 def measured():
     rows = [frame(i) for i in range(FRAMES)]
-    worst = max(row["frameMs"] / row["octreeMs"] for row in rows)
+    worst = max(row["frame_ms"] / row["octree_ms"] for row in rows)
     return {"command": "slabcast edit <skull> --out edit", "commit": "abc", "date": "2026-11-24T10:00:00Z",
             "device": {"renderer": "made up", "vendor": "nobody", "version": "1", "software": False},
             "volume": {"name": "<skull>", "dims": [256, 256, 108]},
-            "conditions": {"size": [512, 512], "planes": 13, "layersPerPlane": 32, "classification": "post",
-                           "edits": "interpolation", "workBudgetMs": 2, "quietFrames": 3, "octreeFrames": 3,
-                           "replays": 3, "turnDegrees": 90},
-            "builds": {"always": {"structure": "bitfield-octree", "blockEdge": 4, "ms": 50, "gpuBytes": 600000},
-                       "settled": {"structure": "proximity", "blockEdge": 4, "lastMs": 5, "gpuBytes": 110592},
-                       "naiveMs": 40},
-            "summary": {"comparedWith": "bitfield-octree", "worstOverOctreeFrame": worst,
-                        "worstOfSingleReplays": 1.41, "worstAddedOverOctreeFrame": 1.237,
-                        "worstOctreeFrameOverMedian": 1.33, "budgetMs": 12,
-                        "budgetGiven": False, "framesOverBudget": 0, "framesEqual": FRAMES, "framesToCorrect": 1,
-                        "frameMs": {"median": 8.5, "p90": 9.5, "max": 10.1},
-                        "naive": {"frameMs": {"median": 47}, "worstOverOctreeFrame": 6.6, "framesOverBudget": 90}},
+            "conditions": {"size": [512, 512], "planes": 13, "layers_per_plane": 32, "classification": "post",
+                           "edits": "interpolation", "work_budget_ms": 2, "quiet_frames": 3, "octree_frames": 3,
+                           "replays": 3, "turn_degrees": 90},
+            "builds": {"always": {"structure": "bitfield-octree", "block_edge": 4, "ms": 50, "gpu_bytes": 600000},
+                       "settled": {"structure": "proximity", "block_edge": 4, "last_ms": 5, "gpu_bytes": 110592},
+                       "naive_ms": 40},
+            "summary": {"compared_with": "bitfield-octree", "worst_over_octree_frame": worst,
+                        "worst_of_single_replays": 1.41, "worst_added_over_octree_frame": 1.237,
+                        "worst_octree_frame_over_median": 1.33, "budget_ms": 12,
+                        "budget_given": False, "frames_over_budget": 0, "frames_equal": FRAMES, "frames_to_correct": 1,
+                        "frame_ms": {"median": 8.5, "p90": 9.5, "max": 10.1},
+                        "naive": {"frame_ms": {"median": 47}, "worst_over_octree_frame": 6.6, "frames_over_budget": 90}},
             "rows": rows}
 
 
@@ -64,7 +64,7 @@ class EditReportTest(ReportTest):
 
     def test_says_what_was_found(self):
         page = self.page(measured())
-        worst = max(row["frameMs"] / row["octreeMs"] for row in measured()["rows"])
+        worst = max(row["frame_ms"] / row["octree_ms"] for row in measured()["rows"])
         for said in (f"{worst:.2f}×", "6.60×", "23.7 %", "1.33×", "1 frame<", "120 of 120 pictures", "1.41×", "&lt;skull&gt;", "13 × 32",
                      "skipping: bitfield-octree", "skipping: proximity", "1.5 times the median frame"):
             self.assertIn(said, page)
@@ -81,7 +81,7 @@ class EditReportTest(ReportTest):
             self.assertIn(said, page)
 
         data = measured()
-        data["summary"]["comparedWith"] = "partitioned"
+        data["summary"]["compared_with"] = "partitioned"
         data["builds"]["always"]["structure"] = "partitioned"
         del data["builds"]["settled"]
         for row in data["rows"]:
@@ -93,7 +93,7 @@ class EditReportTest(ReportTest):
 
     def test_without_edits_there_is_no_time_of_one(self):
         data = measured()
-        data["summary"]["framesToCorrect"] = data["summary"]["editFrameMs"] = None
+        data["summary"]["frames_to_correct"] = data["summary"]["edit_frame_ms"] = None
         for row in data["rows"]:
             row["edit"] = False
         page = self.page(data)
@@ -102,7 +102,7 @@ class EditReportTest(ReportTest):
 
     def test_survives_what_is_not_known(self):
         data = measured()
-        del data["summary"]["framesEqual"], data["builds"], data["summary"]["budgetMs"], data["conditions"]
+        del data["summary"]["frames_equal"], data["builds"], data["summary"]["budget_ms"], data["conditions"]
         for row in data["rows"]:
             row["counters"] = None
         page = self.page(data)
@@ -114,10 +114,10 @@ class EditReportTest(ReportTest):
         self.refusal("not JSON", "{")
         self.refusal("holds no rows", {"rows": []})
         data = measured()
-        data["rows"][3]["octreeMs"] = 0
-        self.refusal("rows[3]: octreeMs is 0", data)
-        data["rows"][3]["octreeMs"] = "fast"
-        self.refusal("rows[3]: octreeMs is no time", data)
+        data["rows"][3]["octree_ms"] = 0
+        self.refusal("rows[3]: octree_ms is 0", data)
+        data["rows"][3]["octree_ms"] = "fast"
+        self.refusal("rows[3]: octree_ms is no time", data)
 
 
 if __name__ == "__main__":

@@ -20,12 +20,12 @@ json row(const Sampling& sampling, double total, double sampled, double ms) {
                      {"sampling", {{"rmse", sampled}}},
                      {"table", {{"rmse", 0.0}}},
                      {"gpu", nullptr}};
-    made["frameMs"] = {{"median", ms}};
+    made["frame_ms"] = {{"median", ms}};
     return made;
 }
 
 std::optional<double> timeOf(const json& row) {
-    return row.at("frameMs").at("median").get<double>();
+    return row.at("frame_ms").at("median").get<double>();
 }
 
 MeasuredError measured(const char* volume, const char* commit, double rmse) {

@@ -29,7 +29,7 @@ CLASSIFICATIONS = {"post": (6e-3, 2, 4e-5), "preclassified": (2e-2, 1, 1e-4), "p
 
 def errors(rmse):
     return {"rmse": rmse, "psnr": -20 * math.log10(rmse) if rmse else None, "max": 12 * rmse,
-            "meanDeltaE": 40 * rmse, "p999DeltaE": 400 * rmse}
+            "mean_delta_e": 40 * rmse, "p999_delta_e": 400 * rmse}
 
 
 def row(classification, target, termination, jitter, spacing, layers):
@@ -47,18 +47,18 @@ def row(classification, target, termination, jitter, spacing, layers):
         "id": name, "spacing": spacing, "layers": layers, "classification": classification, "target": target,
         "ratio": {0: "ray casting", 1: "slicing"}.get(layers, "hybrid"), "termination": termination,
         "jitter": jitter,
-        "plan": {"planes": planes, "layersPerPlane": layers or total, "layers": total, "layerSpacingMm": spacing,
+        "plan": {"planes": planes, "layers_per_plane": layers or total, "layers": total, "layer_spacing_mm": spacing,
                  "variant": f"{classification}-proximity-loop"},
         "error": {"total": errors(math.hypot(sampling, table, gpu)), "sampling": errors(sampling),
                   "table": errors(table), "gpu": errors(gpu)},
         "order": {"total": 0.9 * order, "sampling": order, "table": None, "gpu": None},
         "date": "2026-01-02T10:00:05Z", "coarser": None,
-        "frameMs": {"median": ms, "min": 0.95 * ms, "max": 1.2 * ms, "p10": ms, "p90": ms, "n": 4},
-        "counters": {"fragments": 9000 * planes, "layersEvaluated": fetches, "layersSkipped": 2 * fetches,
-                     "volumeFetches": fetches, "skipFetches": 900 * (planes + 20)},
+        "frame_ms": {"median": ms, "min": 0.95 * ms, "max": 1.2 * ms, "p10": ms, "p90": ms, "n": 4},
+        "counters": {"fragments": 9000 * planes, "layers_evaluated": fetches, "layers_skipped": 2 * fetches,
+                     "volume_fetches": fetches, "skip_fetches": 900 * (planes + 20)},
         "command": f"slabcast render skull.nrrd -o {name}.png --layer-spacing {spacing}",
         "pictures": {"thumbnail": f"pictures/{name}.png", "difference": f"pictures/{name}_difference.png",
-                     "differenceFactor": 64}}
+                     "difference_factor": 64}}
 
 
 def front_of(rows, cost):
@@ -74,11 +74,11 @@ def rmse(entry):
 
 
 def milliseconds(entry):
-    return entry["frameMs"]["median"]
+    return entry["frame_ms"]["median"]
 
 
 def fetches(entry):
-    return entry["counters"]["volumeFetches"] + entry["counters"]["skipFetches"]
+    return entry["counters"]["volume_fetches"] + entry["counters"]["skip_fetches"]
 
 
 def measured(spacings=(2, 0.5), layers=(1, 16, 0), jitters=(False, True), terminations=("off",)):
@@ -88,14 +88,14 @@ def measured(spacings=(2, 0.5), layers=(1, 16, 0), jitters=(False, True), termin
         "command": "slabcast error skull.nrrd --out err --quick", "commit": "abc1234", "date": "2026-01-02T10:00:09Z",
         "started": "2026-01-02T10:00:00Z",
         "device": {"vendor": "Maker", "renderer": "Test <GPU> & Co", "version": "OpenGL ES 3.2", "software": True},
-        "volume": {"name": "skull", "dims": [256, 256, 108], "type": "int16", "unit": "HU", "spacingMm": [1, 1, 2],
+        "volume": {"name": "skull", "dims": [256, 256, 108], "type": "int16", "unit": "HU", "spacing_mm": [1, 1, 2],
                    "bytes": 14155776},
-        "conditions": {"size": [160, 160], "camera": [0, 10, 2.5], "fovDegrees": 40, "transferFunction": "CT bone",
+        "conditions": {"size": [160, 160], "camera": [0, 10, 2.5], "fov_degrees": 40, "transfer_function": "CT bone",
                        "space": "display", "lattice": "planar", "tighten": True, "skip": "auto", "form": "auto",
-                       "texelFormat": "r16", "smallestVoxelEdgeMm": 1.0, "framesPerRowAtMost": 5, "quick": True},
-        "leftOut": [{"classification": "emission", "why": "this device lacks what it needs"}],
+                       "texel_format": "r16", "smallest_voxel_edge_mm": 1.0, "frames_per_row_at_most": 5, "quick": True},
+        "left_out": [{"classification": "emission", "why": "this device lacks what it needs"}],
         "reference": {"seconds": 6.1, "tolerance": 1e-10, "size": [160, 160], "picture": "pictures/reference.png"},
-        "rows": rows, "front": front_of(rows, milliseconds), "frontByFetches": front_of(rows, fetches)}
+        "rows": rows, "front": front_of(rows, milliseconds), "front_by_fetches": front_of(rows, fetches)}
 
 
 def write(folder, data):
@@ -202,8 +202,8 @@ class ErrorReportTest(ReportTest):
         entry = row("post", "rgba8", "off", False, 1, 0)
         kept = {name: entry[name] for name in ("id", "spacing", "layers", "classification", "target", "plan")}
         kept.update(error={"total": {"rmse": 0, "psnr": None}, "sampling": None, "table": None, "gpu": None},
-                    frameMs={"median": 5.0}, counters=None)
-        (self.folder / "error.json").write_text(json.dumps({"rows": [kept], "front": [0], "frontByFetches": []}))
+                    frame_ms={"median": 5.0}, counters=None)
+        (self.folder / "error.json").write_text(json.dumps({"rows": [kept], "front": [0], "front_by_fetches": []}))
         result = run(self.folder)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         text = (self.folder / "report.html").read_text()
@@ -236,7 +236,7 @@ class ErrorReportTest(ReportTest):
                 place = place[name]
             place[key] = value
             return data
-        self.refusal("rows[2].frameMs.median", spoilt("median", "5", "frameMs"))
+        self.refusal("rows[2].frame_ms.median", spoilt("median", "5", "frame_ms"))
         self.refusal("rows[2].error.total.rmse", spoilt("rmse", None, "error", "total"))
         self.refusal("rows[2].spacing", spoilt("spacing", 0))
         self.refusal("rows[2].id", spoilt("id", 7))

@@ -28,7 +28,7 @@ json finished(const std::string& id) {
         {"jitter", false},
         {"error",
          {{"total", {{"rmse", 0.1}}}, {"sampling", nullptr}, {"table", nullptr}, {"gpu", nullptr}}},
-        {"frameMs", {{"median", 3.0}}},
+        {"frame_ms", {{"median", 3.0}}},
         {"counters", nullptr},
         {"pictures", {{"thumbnail", id + ".png"}, {"difference", id + "_d.png"}}}};
 }

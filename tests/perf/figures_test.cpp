@@ -95,18 +95,18 @@ TEST(SkipFigures, TheFasterDistanceMapCounts) {
         drawn(skull(), SkipStructure::Chebyshev, kRayCasting, kEarlyExit, {1, 1}, 2.5),
         drawn(skull(), SkipStructure::BitfieldOctree, kRayCasting, kMarchingOnly, {3, 3}, 2.7),
         drawn(skull(), SkipStructure::MinMaxOctree, kRayCasting, kMarchingOnly, {6, 6}, 1.3)};
-    const Figure map = figureOf(skull(), rows, "distanceMapMarchingOnlySpeedup");
+    const Figure map = figureOf(skull(), rows, "distance_map_marching_only_speedup");
     EXPECT_EQ(map.value, 4.0);
     EXPECT_EQ(map.goal, 2.0);
     EXPECT_EQ(map.reached(), true);
     EXPECT_EQ(map.from, "times as fast; chebyshev");
-    const Figure early = figureOf(skull(), rows, "distanceMapEarlyExitSpeedup");
+    const Figure early = figureOf(skull(), rows, "distance_map_early_exit_speedup");
     EXPECT_EQ(early.value, 2.5);
     EXPECT_EQ(early.reached(), false); // 3 was asked for
-    const Figure octree = figureOf(skull(), rows, "bitfieldOctreeOverDistanceMapTime");
+    const Figure octree = figureOf(skull(), rows, "bitfield_octree_over_distance_map_time");
     EXPECT_EQ(octree.value, 1.5); // 3 over 2
     EXPECT_EQ(octree.reached(), true);
-    EXPECT_EQ(figureOf(skull(), rows, "bitfieldOctreeOverMinmaxOctreeTime").value, 0.5);
+    EXPECT_EQ(figureOf(skull(), rows, "bitfield_octree_over_minmax_octree_time").value, 0.5);
 }
 
 TEST(SkipFigures, GoalsOfTheSkullAreNoOtherVolumes) {
@@ -117,35 +117,37 @@ TEST(SkipFigures, GoalsOfTheSkullAreNoOtherVolumes) {
     const std::vector<Row> rows{
         drawn(skull(), SkipStructure::Proximity, kRayCasting, kMarchingOnly, {4}, 2.0)};
     for (const VolumeRecord& volume : {lung, head, gap()}) {
-        EXPECT_FALSE(figureOf(volume, rows, "distanceMapMarchingOnlySpeedup").goal);
-        EXPECT_FALSE(figureOf(volume, rows, "hybridEarlyExitRectanglesSpeedup").goal);
+        EXPECT_FALSE(figureOf(volume, rows, "distance_map_marching_only_speedup").goal);
+        EXPECT_FALSE(figureOf(volume, rows, "hybrid_early_exit_rectangles_speedup").goal);
     }
-    EXPECT_FALSE(figureOf(skull(), {}, "bitfieldOctreeOverMinmaxOctreeBlocksVisited").goal);
+    EXPECT_FALSE(figureOf(skull(), {}, "bitfield_octree_over_minmax_octree_blocks_visited").goal);
 }
 
 TEST(SkipFigures, OtherVolumesRowsAreNotMixedIn) {
     const std::vector<Row> rows{
         drawn(gap(), SkipStructure::Proximity, kRayCasting, kMarchingOnly, {4}, 9.0),
         drawn(skull(), SkipStructure::Proximity, kRayCasting, kMarchingOnly, {4}, 2.0)};
-    EXPECT_EQ(figureOf(skull(), rows, "distanceMapMarchingOnlySpeedup").value, 2.0);
-    EXPECT_EQ(figureOf(gap(), rows, "distanceMapMarchingOnlySpeedup").value, 9.0);
+    EXPECT_EQ(figureOf(skull(), rows, "distance_map_marching_only_speedup").value, 2.0);
+    EXPECT_EQ(figureOf(gap(), rows, "distance_map_marching_only_speedup").value, 9.0);
 }
 
 TEST(SkipFigures, BlocksAreThoseOfEqualParameters) {
     const std::vector<Row> rows{counted(gap(), SkipStructure::BitfieldOctree, 3, 8),
                                 counted(gap(), SkipStructure::MinMaxOctree, 6, 10)};
-    const Figure visited = figureOf(gap(), rows, "bitfieldOctreeOverMinmaxOctreeBlocksVisited");
+    const Figure visited =
+        figureOf(gap(), rows, "bitfield_octree_over_minmax_octree_blocks_visited");
     EXPECT_EQ(visited.value, 0.5);
     EXPECT_EQ(visited.goal, 0.6);
     EXPECT_EQ(visited.reached(), true);
-    EXPECT_EQ(figureOf(gap(), rows, "bitfieldOctreeOverMinmaxOctreeBlocksLookedAt").value, 0.8);
+    EXPECT_EQ(figureOf(gap(), rows, "bitfield_octree_over_minmax_octree_blocks_looked_at").value,
+              0.8);
 }
 
 TEST(SkipFigures, WorkThatCouldNotBeCountedIsNoValue) {
     std::vector<Row> rows{counted(gap(), SkipStructure::BitfieldOctree, 3, 8),
                           counted(gap(), SkipStructure::MinMaxOctree, 6, 10)};
     rows[1].counters = fail(ErrorCode::DeviceUnsupported, "no blending of float32 targets");
-    EXPECT_FALSE(figureOf(gap(), rows, "bitfieldOctreeOverMinmaxOctreeBlocksVisited").value);
+    EXPECT_FALSE(figureOf(gap(), rows, "bitfield_octree_over_minmax_octree_blocks_visited").value);
 }
 
 TEST(SkipFigures, AHybridIsComparedWithNoneOfTheSameOrTheOtherPlanes) {
@@ -156,28 +158,28 @@ TEST(SkipFigures, AHybridIsComparedWithNoneOfTheSameOrTheOtherPlanes) {
         row(SkipStructure::None, false, 12, 1.0), row(SkipStructure::None, true, 8, 1.5),
         row(SkipStructure::Proximity, false, 6, 2.0), row(SkipStructure::Proximity, true, 4, 3.0),
         row(SkipStructure::Chebyshev, true, 3, 4.0)};
-    EXPECT_EQ(figureOf(skull(), rows, "hybridEarlyExitSphereSpeedup").value, 2.0);    // 12 / 6
-    EXPECT_EQ(figureOf(skull(), rows, "hybridEarlyExitStructureSpeedup").value, 4.0); // 12 / 3
-    const Figure rectangles = figureOf(skull(), rows, "hybridEarlyExitRectanglesSpeedup");
+    EXPECT_EQ(figureOf(skull(), rows, "hybrid_early_exit_sphere_speedup").value, 2.0);    // 12 / 6
+    EXPECT_EQ(figureOf(skull(), rows, "hybrid_early_exit_structure_speedup").value, 4.0); // 12 / 3
+    const Figure rectangles = figureOf(skull(), rows, "hybrid_early_exit_rectangles_speedup");
     EXPECT_DOUBLE_EQ(*rectangles.value, 8.0 / 3.0);
     EXPECT_EQ(rectangles.reached(), true);
     EXPECT_EQ(rectangles.from,
               "times as fast, each at its best ratio; chebyshev, 16 layers a plane");
-    EXPECT_FALSE(figureOf(skull(), rows, "hybridMarchingOnlySphereSpeedup").value);
+    EXPECT_FALSE(figureOf(skull(), rows, "hybrid_marching_only_sphere_speedup").value);
 }
 
 TEST(SkipFigures, MergingIsTheMedianOfTransferFunctionsAtSixteenPartitions) {
     const std::vector<Row> rows{merged(skull(), 4, 16, 8), merged(skull(), 4, 16, 12),
                                 merged(skull(), 4, 16, 30), merged(skull(), 4, 32, 1),
                                 merged(skull(), 2, 16, 5)};
-    const Figure four = figureOf(skull(), rows, "merge16SpeedupEdge4");
+    const Figure four = figureOf(skull(), rows, "merge_16_speedup_edge_4");
     EXPECT_EQ(four.value, 12.0);
     EXPECT_EQ(four.reached(), true);
     EXPECT_EQ(four.from, "times as fast, median of 3 transfer functions (8 to 30)");
-    const Figure two = figureOf(skull(), rows, "merge16SpeedupEdge2");
+    const Figure two = figureOf(skull(), rows, "merge_16_speedup_edge_2");
     EXPECT_EQ(two.value, 5.0);
     EXPECT_FALSE(two.reached()); // nothing was asked of it
-    EXPECT_EQ(figureOf(skull(), rows, "merge16SpeedupEdge1").from,
+    EXPECT_EQ(figureOf(skull(), rows, "merge_16_speedup_edge_1").from,
               "not measured: over the memory budget");
 }
 
@@ -187,16 +189,16 @@ TEST(SkipFigures, TheOctreeOf256IsJudgedWhereItWasBuilt) {
             .options = {.structure = SkipStructure::BitfieldOctree}};
     row.cube = Cube{.edge = 256, .volumeBytes = 0, .codesMs = 21.0};
     row.build = Build{.ms = {70, 50, 55}, .memory = {.gpuBytes = 2 * 256 * 256 * 256 / 10}};
-    const Figure ms = figureOf(gap(), {row}, "bitfieldOctree256BuildMs");
+    const Figure ms = figureOf(gap(), {row}, "bitfield_octree_256_build_ms");
     EXPECT_EQ(ms.value, 55.0);
     EXPECT_EQ(ms.reached(), true);
-    const Figure share = figureOf(gap(), {row}, "bitfieldOctree256MemoryShare");
+    const Figure share = figureOf(gap(), {row}, "bitfield_octree_256_memory_share");
     EXPECT_NEAR(*share.value, 0.1, 1e-6);
     EXPECT_EQ(share.reached(), false); // 0.05 was asked for
     row.build->refused = "over the budget";
-    EXPECT_FALSE(figureOf(gap(), {row}, "bitfieldOctree256BuildMs").value);
+    EXPECT_FALSE(figureOf(gap(), {row}, "bitfield_octree_256_build_ms").value);
     row.cube->edge = 128;
-    EXPECT_FALSE(figureOf(gap(), {row}, "bitfieldOctree256BuildMs").value);
+    EXPECT_FALSE(figureOf(gap(), {row}, "bitfield_octree_256_build_ms").value);
 }
 
 TEST(SkipFigures, TheLineNamesWhatWasMissed) {

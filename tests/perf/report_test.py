@@ -39,13 +39,13 @@ def row(planes, layers, skip, ms):
     form = "unrolled" if layers <= 64 else "loop"
     return {
         "label": f"{planes}x{layers}", "classification": "post", "termination": "off", "lattice": "planar",
-        "planes": planes, "layersPerPlane": layers, "form": form, "skip": skip, "tighten": True,
-        "frameMs": {"median": ms, "min": 0.9 * ms, "max": 1.3 * ms, "p10": 0.95 * ms, "p90": 1.1 * ms, "n": 36},
+        "planes": planes, "layers_per_plane": layers, "form": form, "skip": skip, "tighten": True,
+        "frame_ms": {"median": ms, "min": 0.9 * ms, "max": 1.3 * ms, "p10": 0.95 * ms, "p90": 1.1 * ms, "n": 36},
         "counters": {
-            "fragments": 1_000_000 * planes, "layersEvaluated": evaluated,
-            "layersSkipped": 444_000_000 - evaluated, "volumeFetches": evaluated,
-            "skipFetches": 0 if skip == "none" else 1_000_000 * (planes + 20)},
-        "compileMs": 3.0 + 0.8 * min(layers, 64), "variant": f"post-{skip}-{form}{layers}",
+            "fragments": 1_000_000 * planes, "layers_evaluated": evaluated,
+            "layers_skipped": 444_000_000 - evaluated, "volume_fetches": evaluated,
+            "skip_fetches": 0 if skip == "none" else 1_000_000 * (planes + 20)},
+        "compile_ms": 3.0 + 0.8 * min(layers, 64), "variant": f"post-{skip}-{form}{layers}",
         "thumbnail": f"thumbnails/{planes}x{layers}_{skip}.png"}
 
 
@@ -56,13 +56,13 @@ def sweep():
     return {
         "command": "slabcast sweep skull.nrrd --layers 1,2,4 --out out", "commit": "abc1234", "date": "2026-01-02",
         "device": {"vendor": "Maker", "renderer": "Test <GPU> & Co", "version": "OpenGL ES 3.2", "software": True},
-        "volume": {"name": "skull.nrrd", "dims": [256, 256, 256], "type": "int16", "spacingMm": [0.9, 0.9, 0.9],
+        "volume": {"name": "skull.nrrd", "dims": [256, 256, 256], "type": "int16", "spacing_mm": [0.9, 0.9, 0.9],
                    "bytes": 33554432},
         "conditions": {"size": [1024, 1024], "classification": "post", "space": "display", "target": "rgba8",
-                       "shade": "off", "termination": "off", "lattice": "planar", "layerSpacingMm": 0.9,
-                       "totalLayers": 444, "tighten": True, "framesPerRow": 36, "views": 1},
-        "memory": {"peakHostBytes": 201326592, "volumeBytes": 33554432, "textureBytes": 33554432, "skipBytes": 262144},
-        "skipBuild": {"structure": "proximity", "blockEdge": 4, "ms": 41.5, "occupiedFraction": 0.183},
+                       "shade": "off", "termination": "off", "lattice": "planar", "layer_spacing_mm": 0.9,
+                       "total_layers": 444, "tighten": True, "frames_per_row": 36, "views": 1},
+        "memory": {"peak_host_bytes": 201326592, "volume_bytes": 33554432, "texture_bytes": 33554432, "skip_bytes": 262144},
+        "skip_build": {"structure": "proximity", "block_edge": 4, "ms": 41.5, "occupied_fraction": 0.183},
         "rows": [row(*ratio, skip, ms[ratio]) for skip, ms in (("none", slow), ("proximity", fast))
                  for ratio in RATIOS]}
 
@@ -155,7 +155,7 @@ class ReportTest(unittest.TestCase):
         self.assertNotIn("software driver", self.page(data))
 
     def test_lives_without_the_optional_keys(self):
-        data = {"rows": [{"planes": p, "layersPerPlane": n, "frameMs": {"median": 10.0 + p}} for p, n in RATIOS[:3]]}
+        data = {"rows": [{"planes": p, "layers_per_plane": n, "frame_ms": {"median": 10.0 + p}} for p, n in RATIOS[:3]]}
         text = self.page(data)
         self.assertIn("slicing was not measured", text)
         self.assertNotIn("Work per frame", text)
@@ -184,9 +184,9 @@ class ReportTest(unittest.TestCase):
             (self.folder / "sweep.json").write_text(text)
             self.refusal(expected)
         data = sweep()
-        data["rows"][3]["frameMs"]["median"] = None
+        data["rows"][3]["frame_ms"]["median"] = None
         write_sweep(self.folder, data)
-        self.refusal("rows[3].frameMs.median")
+        self.refusal("rows[3].frame_ms.median")
 
 
 if __name__ == "__main__":

@@ -18,10 +18,10 @@ TEST(SettingsJson, holdsEverySettingByItsName) {
     }
 }
 
-TEST(SettingsJson, keysAreLowerCamel) {
+TEST(SettingsJson, keysAreSnakeCase) {
     EXPECT_EQ(keyOf("layers"), "layers");
-    EXPECT_EQ(keyOf("layers-per-plane"), "layersPerPlane");
-    EXPECT_EQ(keyOf("early exit"), "earlyExit");
+    EXPECT_EQ(keyOf("layers-per-plane"), "layers_per_plane");
+    EXPECT_EQ(keyOf("early exit"), "early_exit");
     EXPECT_EQ(keyOf(""), "");
 }
 
@@ -35,12 +35,12 @@ TEST(SettingsJson, valuesAreNumbersWordsAndNothing) {
     EXPECT_EQ(all.at("planes"), json(12));
     EXPECT_TRUE(all.at("planes").is_number_integer());
     EXPECT_TRUE(all.at("layers").is_null());
-    EXPECT_EQ(all.at("layerSpacing"), json(1.0));
+    EXPECT_EQ(all.at("layer_spacing"), json(1.0));
     EXPECT_EQ(all.at("jitter"), json(true));
     EXPECT_EQ(all.at("shade"), json(false));
     EXPECT_EQ(all.at("order"), json("front-to-back"));
     EXPECT_TRUE(all.at("skip").is_null());
-    EXPECT_EQ(all.at("valueRange"), json({-0.5, 2.0}));
+    EXPECT_EQ(all.at("value_range"), json({-0.5, 2.0}));
     EXPECT_EQ(all.at("termination"), json(0.99609375));
 }
 

@@ -37,20 +37,20 @@ def times(median):
 def parameters(structure):
     row = {"structure": structure}
     if structure != "none":
-        row["blockEdge"] = 4
+        row["block_edge"] = 4
     if structure == "bitfield-octree":
         row["bits"] = 32
     if structure == "partitioned":
         row["partitions"] = 64
     if structure.endswith("octree"):
-        row.update({"initialLevel": 3, "traversal": "bidirectional"})
+        row.update({"initial_level": 3, "traversal": "bidirectional"})
     return row
 
 
 def counters(structure):
-    return {"fragments": 15_000, "layersEvaluated": round(1.4e6 / SPEEDUPS[structure]), "layersSkipped": 10,
-            "volumeFetches": round(1.4e6 / SPEEDUPS[structure]), "skipFetches": 2_500_000, "stretches": 180_000,
-            "blocksVisited": 82_000}
+    return {"fragments": 15_000, "layers_evaluated": round(1.4e6 / SPEEDUPS[structure]), "layers_skipped": 10,
+            "volume_fetches": round(1.4e6 / SPEEDUPS[structure]), "skip_fetches": 2_500_000, "stretches": 180_000,
+            "blocks_visited": 82_000}
 
 
 def frames(volume):
@@ -61,27 +61,27 @@ def frames(volume):
             for structure, speedup in SPEEDUPS.items():
                 for tight in (False, True) if family != "ray casting" and structure != "none" else (False,):
                     ms = MODES[mode] / speedup / (1.4 if tight else 1)
-                    finer = {"blockEdge": 2} if structure == "chebyshev" and mode == "early exit" else {}
+                    finer = {"block_edge": 2} if structure == "chebyshev" and mode == "early exit" else {}
                     rows.append({"table": "frames", "volume": volume, "family": family, "mode": mode,
-                                 **parameters(structure), **finer, "planes": 7, "layersPerPlane": 64, "tighten": tight,
-                                 "order": "back-to-front", "frameMs": times(ms), "samples": [ms] * 5,
+                                 **parameters(structure), **finer, "planes": 7, "layers_per_plane": 64, "tighten": tight,
+                                 "order": "back-to-front", "frame_ms": times(ms), "samples": [ms] * 5,
                                  "speedup": MODES[mode] / ms, "counters": counters(structure)})
     return rows
 
 
 def searched(volume):
-    return [{"table": "search", "volume": volume, **parameters(structure), "blockEdge": edge, "initialLevel": level,
+    return [{"table": "search", "volume": volume, **parameters(structure), "block_edge": edge, "initial_level": level,
              **({"bits": bits} if bits else {}), "traversal": way, "ms": 4 + edge / 4 + level / 3 + (way == "top-down")}
             for structure in ("boolean-octree", "bitfield-octree") for edge in (2, 4, 8) for level in (0, 3)
             for way in ("bidirectional", "top-down") for bits in ((8, 32) if structure[1] == "i" else (None,))]
 
 
 def built(volume, table="structures", **more):
-    return [{"table": table, "volume": volume, **parameters(structure), "buildMs": times(12.0),
-             **({"gpuBuildMs": None, "gpuRefused": NO_COMPUTE} if structure == "partitioned" else
-                {"gpuBuildMs": times(7.5)}),
-             "updateMs": times(0.4) if structure.startswith(("min", "bit")) else None, "gpuBytes": 1_200_000,
-             "hostBytes": 7_000_000 if structure == "partitioned" else 0, "occupiedFraction": 0.22, **more}
+    return [{"table": table, "volume": volume, **parameters(structure), "build_ms": times(12.0),
+             **({"gpu_build_ms": None, "gpu_refused": NO_COMPUTE} if structure == "partitioned" else
+                {"gpu_build_ms": times(7.5)}),
+             "update_ms": times(0.4) if structure.startswith(("min", "bit")) else None, "gpu_bytes": 1_200_000,
+             "host_bytes": 7_000_000 if structure == "partitioned" else 0, "occupied_fraction": 0.22, **more}
             for structure in SPEEDUPS if structure != "none"]
 
 
@@ -90,14 +90,14 @@ def merging(volume):
     for edge in (4, 1):
         for count in PARTITIONS:
             refused = {"refused": REFUSED} if edge == 1 and count > 16 else {
-                "initMs": 3.0 * count, "gpuBytes": 1000, "hostBytes": 110_592 * count}
-            rows.append({"table": "partitions", "volume": volume, "structure": "partitioned", "blockEdge": edge,
+                "init_ms": 3.0 * count, "gpu_bytes": 1000, "host_bytes": 110_592 * count}
+            rows.append({"table": "partitions", "volume": volume, "structure": "partitioned", "block_edge": edge,
                          "partitions": count, **refused})
         for tf, name in TRANSFERS.items():
-            named = {"volume": volume, "blockEdge": edge, "tf": tf, "tfName": name}
-            rows += [{"table": "rebuild", "structure": structure, "buildMs": times(9.0), "ofRangesMs": times(1.0),
+            named = {"volume": volume, "block_edge": edge, "tf": tf, "tf_name": name}
+            rows += [{"table": "rebuild", "structure": structure, "build_ms": times(9.0), "of_ranges_ms": times(1.0),
                       **named} for structure in ("chebyshev", "proximity")]
-            rows += [{"table": "merge", "structure": "partitioned", "partitions": count, "updateMs": times(count / 64),
+            rows += [{"table": "merge", "structure": "partitioned", "partitions": count, "update_ms": times(count / 64),
                       "speedup": 9 * 64 / count, **named} for count in PARTITIONS if edge == 4 or count == 16]
     return rows
 
@@ -112,26 +112,26 @@ def compared():
     skull = "skull & co"
     rows = (frames(skull) + searched(skull) + built(skull) + merging(skull)
             + [{"table": "work", "volume": skull, **parameters(s), "counters": counters(s)} for s in SPEEDUPS]
-            + [row for edge in (64, 256) for row in built(skull, "sizes", edge=edge, frameMs=times(edge / 8))]
+            + [row for edge in (64, 256) for row in built(skull, "sizes", edge=edge, frame_ms=times(edge / 8))]
             + frames("gap"))
     lungs = [12.05, 5.98, 7.32, 15.59, 7.91]
     columns = ["none", "distance map", "boolean-octree", "minmax-octree", "bitfield-octree"]
     return {
         "command": "slabcast skipbench skull.nrrd phantom:gap --out bench", "commit": "abc1234", "date": "2026-01-02",
         "device": {"vendor": "Maker", "renderer": "Test <GPU>", "version": "OpenGL ES 3.2", "software": True},
-        "conditions": {"size": [256, 256], "camera": [0, 10, 2.5], "fovDegrees": 40, "layerSpacingVoxels": 1.0,
+        "conditions": {"size": [256, 256], "camera": [0, 10, 2.5], "fov_degrees": 40, "layer_spacing_voxels": 1.0,
                        "lattice": "planar", "target": "rgba8", "space": "display", "termination": 0.9961,
-                       "framesPerRowAtMost": 5, "partitionBudgetBytes": 2 ** 28, "quick": True},
-        "volumes": [{"name": skull, "dims": [256, 256, 108], "type": "int16", "transferFunction": "CT <bone>",
-                     "texelBytes": 14155776, "codesMs": 17.0},
-                    {"name": "gap", "dims": [128] * 3, "type": "uint16", "transferFunction": "Gap"}],
+                       "frames_per_row_at_most": 5, "partition_budget_bytes": 2 ** 28, "quick": True},
+        "volumes": [{"name": skull, "dims": [256, 256, 108], "type": "int16", "transfer_function": "CT <bone>",
+                     "texel_bytes": 14155776, "codes_ms": 17.0},
+                    {"name": "gap", "dims": [128] * 3, "type": "uint16", "transfer_function": "Gap"}],
         "figures": [figure("distance map against none", skull, 3.1, 2.0),
                     figure("bitfield octree of 256^3, build", skull, 61.0, 60.0, "<="),
                     figure("distance map against none", "gap", 3.1, None),
                     figure("merging at edge 1", skull, None, 10.0)],
         "papers": {"faludi": {"source": "Someone 2021, table 1", "device": "a GPU",
                               "structures": columns,
-                              "datasets": [{"name": "Lungs", "marchingOnly": lungs, "earlyExit": lungs, "shading": lungs,
+                              "datasets": [{"name": "Lungs", "marching_only": lungs, "early_exit": lungs, "shading": lungs,
                                             "generation": [59.2, 7.7, 7.1, 7.0]}]},
                    "rauter": {"source": "Someone 2024, table 1", "device": "another",
                               "partitions": [16, 32, 64, 128, 256],
@@ -234,8 +234,8 @@ class SkipbenchReportTest(ReportTest):
         self.refusal("not JSON", "{")
         self.refusal("no rows", {"rows": []})
         data = compared()
-        data["rows"][3]["frameMs"]["median"] = None
-        self.refusal("rows[3].frameMs.median", data)
+        data["rows"][3]["frame_ms"]["median"] = None
+        self.refusal("rows[3].frame_ms.median", data)
         data = compared()
         del data["rows"][2]["volume"]
         self.refusal("rows[2].volume", data)

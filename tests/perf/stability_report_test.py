@@ -33,7 +33,7 @@ def turning(lattice, ratio, degrees):
     return case("in-time", f"turned by {degrees} degrees, {lattice}, {ratio}", 0.1, swims,
                 "twice the reference's change", "RMS change",
                 series={"group": f"{lattice}, {ratio}", "x": degrees, "y": swims,
-                        "xLabel": "turn, degrees", "yLabel": "RMS change of a pixel"})
+                        "x_label": "turn, degrees", "y_label": "RMS change of a pixel"})
 
 
 def measured():
@@ -51,13 +51,13 @@ def measured():
             for group, value in (("opacity", 8e-3), ("light", 9e-4))
             for scene in ("translucent", "faint, 1,300 layers") for method in ("slicing", "ray casting")]
     scenes = [case("left-out", name, 0, 0, "by GL's own account", "resources too many",
-                   leftOut={"plan": ["no skipping: nothing is empty", "no light: shading is off"][:n],
-                            "activeUniforms": 9 + n, "samplers": ["volume", "transfer"],
+                   left_out={"plan": ["no skipping: nothing is empty", "no light: shading is off"][:n],
+                            "active_uniforms": 9 + n, "samplers": ["volume", "transfer"],
                             "fragments": 900 * n, "layers": 70_000 * n,
-                            "volumeAndSkipBytes": 2 ** 20 * n, "timedFrames": 9, "leastFrameMs": 2.0 * n,
-                            "leastFrameMsWithAll": 5.0})
+                            "volume_and_skip_bytes": 2 ** 20 * n, "timed_frames": 9, "least_frame_ms": 2.0 * n,
+                            "least_frame_ms_with_all": 5.0})
               for n, name in ((1, "nothing empty"), (2, "no light"))]
-    scenes.append(case("left-out", "skull", 0, 0, "by GL's own account", "resources too many", leftOut={}))
+    scenes.append(case("left-out", "skull", 0, 0, "by GL's own account", "resources too many", left_out={}))
     return {
         "command": "slabcast stability --out stability", "commit": "abc1234", "date": "2026-01-02", "reduced": True,
         "seconds": 41.5, "device": {"vendor": "Maker", "renderer": "Test <GPU> & Co", "version": "OpenGL ES 3.2",
