@@ -16,7 +16,9 @@ enum class TargetFormat : std::uint8_t { Rgba8, Rgba16f };
 enum class SegmentForm : std::uint8_t { Auto, Unrolled, Loop };
 /// Where skip structures are built. Auto: on the GPU, unless its compute shaders run on the host.
 enum class SkipBuilder : std::uint8_t { Auto, Cpu, Gpu };
-/// Planes over what is there, or nearest first under what is gathered, in a layer of our own.
+/// BackToFront: the farthest plane first, each blended over what the target holds. FrontToBack: the
+/// nearest first, each blended under those before it, in an off-screen layer that is then blended
+/// over the target once.
 enum class BlendOrder : std::uint8_t { BackToFront, FrontToBack };
 
 const char* name(TargetFormat format);
