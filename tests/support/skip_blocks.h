@@ -7,9 +7,9 @@
 #include <vector>
 
 #include <glm/glm.hpp>
-#include <rapidcheck/gtest.h>
 
 #include "core/skip/skip_structure.h"
+#include "tests/support/property.h"
 #include "tests/support/skip_scene.h"
 
 // Grids of blocks by their words: every cell against every block, every block against every other.
@@ -101,11 +101,10 @@ inline std::vector<std::uint8_t> chebyshevByTheWords(const std::vector<std::uint
 
 /// A few odd voxels in an even background: some free space, some blocks, bands between voxels.
 inline SkipScene oddVoxels(int largestDim, int background, TransferTable table) {
-    const auto dim = rc::gen::inRange(1, largestDim);
-    const glm::ivec3 dims(*dim, *dim, *dim);
+    const auto dim = [&] { return anyInt(1, largestDim); };
+    const glm::ivec3 dims(dim(), dim(), dim());
     SkipScene scene = constantScene(dims, std::uint16_t(background), std::move(table));
-    const auto odd = *rc::gen::container<std::vector<std::pair<int, int>>>(rc::gen::pair(
-        rc::gen::inRange(0, int(scene.codes.codes.size())), rc::gen::inRange(0, 256)));
+    const auto odd = anyPairs(intsInRange(0, int(scene.codes.codes.size())), intsInRange(0, 256));
     for (const auto& [voxel, code] : odd) {
         scene.codes.codes[voxel] = std::uint16_t(code);
     }
@@ -114,13 +113,13 @@ inline SkipScene oddVoxels(int largestDim, int background, TransferTable table) 
 
 /// The same under a TF of one band.
 inline SkipScene randomScene(int largestDim) {
-    const int first = *rc::gen::inRange(2, 256);
-    const int last = std::min(255, first + *rc::gen::element(0, 1, 5, 100));
-    return oddVoxels(largestDim, *rc::gen::element(0, 0, 128, 255), bandTable(256, first, last));
+    const int first = anyInt(2, 256);
+    const int last = std::min(255, first + anyElement(0, 1, 5, 100));
+    return oddVoxels(largestDim, anyElement(0, 0, 128, 255), bandTable(256, first, last));
 }
 
 inline int randomEdge() {
-    return *rc::gen::element(1, 2, 4, 8);
+    return anyElement(1, 2, 4, 8);
 }
 
 } // namespace slabcast::test

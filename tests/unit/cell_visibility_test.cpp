@@ -4,15 +4,19 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 
+#include "tests/support/property.h"
 #include "tests/support/skip_scene.h"
 
 namespace slabcast {
 namespace {
 
+using test::anyElement;
+using test::anyInt;
+using test::anyInts;
 using test::bandTable;
 using test::constantScene;
+using test::intsInRange;
 using test::SkipScene;
 
 /// The rule as the words have it: some texel with alpha between the cell's ends, one texel of grace
@@ -40,42 +44,42 @@ bool visibleByTheWords(const SkipScene& scene, int minCode, int maxCode, double 
 
 SkipScene randomTableScene() {
     SkipScene scene = constantScene(glm::ivec3(1), 0, {});
-    const int size = *rc::gen::inRange(2, 40);
+    const int size = anyInt(2, 40);
     scene.table = bandTable(size, 0, -1);
-    for (const int k : *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, size))) {
+    for (const int k : anyInts(intsInRange(0, size))) {
         scene.table.texels[k].a = 0.25F;
     }
-    scene.table.firstValue = *rc::gen::inRange(-400, 400) / 8.0;
-    scene.table.lastValue = scene.table.firstValue + *rc::gen::inRange(1, 2000) / 8.0;
-    scene.texels.valueScale = *rc::gen::element(1.0, 0.5, 2.0, 0.25);
-    scene.texels.valueBias = *rc::gen::inRange(-400, 400) / 8.0;
+    scene.table.firstValue = anyInt(-400, 400) / 8.0;
+    scene.table.lastValue = scene.table.firstValue + anyInt(1, 2000) / 8.0;
+    scene.texels.valueScale = anyElement(1.0, 0.5, 2.0, 0.25);
+    scene.texels.valueBias = anyInt(-400, 400) / 8.0;
     return scene;
 }
 
-RC_GTEST_PROP(CellVisibility, SaysWhatTheWordsSay, ()) {
+PROPERTY(CellVisibility, SaysWhatTheWordsSay) {
     const SkipScene scene = randomTableScene();
-    const double error = *rc::gen::element(0.0, 0.5, 3.0);
+    const double error = anyElement(0.0, 0.5, 3.0);
     const CellVisibility visibility = scene.visibility(error);
     for (int a = 0; a < 256; a += 3) {
         for (int b = a; b < 256; b += 5) {
             // Where an end falls on a texel, rounding may take either side.
             const bool visible = visibility.visible(std::uint16_t(a), std::uint16_t(b));
-            RC_ASSERT(visible || !visibleByTheWords(scene, a, b, error, -1e-9));
-            RC_ASSERT(!visible || visibleByTheWords(scene, a, b, error, 1e-9));
+            PROPERTY_ASSERT(visible || !visibleByTheWords(scene, a, b, error, -1e-9));
+            PROPERTY_ASSERT(!visible || visibleByTheWords(scene, a, b, error, 1e-9));
         }
     }
 }
 
-RC_GTEST_PROP(CellVisibility, MissesNoValueThatACellCanTake, ()) {
+PROPERTY(CellVisibility, MissesNoValueThatACellCanTake) {
     const SkipScene scene = randomTableScene();
     const CellVisibility visibility = scene.visibility();
-    const int a = *rc::gen::inRange(0, 256);
-    const int b = *rc::gen::inRange(a, 256);
+    const int a = anyInt(0, 256);
+    const int b = anyInt(a, 256);
     for (int step = 0; step <= 1000; ++step) {
         const double sampled = a + (b - a) * step / 1000.0;
         const double value = scene.texels.valueScale * sampled + scene.texels.valueBias;
         if (lookUp(scene.table, value).a > 0.0) {
-            RC_ASSERT(visibility.visible(std::uint16_t(a), std::uint16_t(b)));
+            PROPERTY_ASSERT(visibility.visible(std::uint16_t(a), std::uint16_t(b)));
         }
     }
 }

@@ -4,19 +4,24 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 
 #include "core/skip/blocks.h"
 #include "core/skip/occupancy.h"
 #include "core/skip/proximity_cloud.h"
+#include "tests/support/property.h"
 #include "tests/support/skip_blocks.h"
 
 namespace slabcast {
 namespace {
 
+using test::anyBits;
+using test::anyElement;
+using test::anyInt;
+using test::anyInts;
 using test::bandTable;
 using test::chebyshevByTheWords;
 using test::constantScene;
+using test::intsInRange;
 using test::occupiedByTheWords;
 using test::randomEdge;
 using test::randomScene;
@@ -31,22 +36,22 @@ std::int64_t sites(const std::vector<std::uint8_t>& occupied) {
     return std::count(occupied.begin(), occupied.end(), 1);
 }
 
-RC_GTEST_PROP(Chebyshev, CountsBlocksToTheNearestOccupiedOne, ()) {
+PROPERTY(Chebyshev, CountsBlocksToTheNearestOccupiedOne) {
     const SkipScene scene = randomScene(20);
     const int edge = randomEdge();
     const CellVisibility visibility = scene.visibility();
     const auto occupied = occupiedByTheWords(scene, visibility, edge);
     const FreeLengths map = built(buildChebyshev(visibility, edge));
-    RC_ASSERT(map.blocks == (scene.geometry.dims + edge - 1) / edge);
-    RC_ASSERT(map.blockEdgeVoxels == edge);
-    RC_ASSERT(map.quantumMm == 0.0);
-    RC_ASSERT(map.occupiedBlocks == sites(occupied));
-    RC_ASSERT(map.counts == chebyshevByTheWords(occupied, map.blocks));
+    PROPERTY_ASSERT(map.blocks == (scene.geometry.dims + edge - 1) / edge);
+    PROPERTY_ASSERT(map.blockEdgeVoxels == edge);
+    PROPERTY_ASSERT(map.quantumMm == 0.0);
+    PROPERTY_ASSERT(map.occupiedBlocks == sites(occupied));
+    PROPERTY_ASSERT(map.counts == chebyshevByTheWords(occupied, map.blocks));
 }
 
-RC_GTEST_PROP(Blocks, AreOccupiedOrFree, ()) {
+PROPERTY(Blocks, AreOccupiedOrFree) {
     const SkipScene scene = randomScene(20);
-    const int edge = *rc::gen::element(1, 2, 4, 8, 16, 32);
+    const int edge = anyElement(1, 2, 4, 8, 16, 32);
     const CellVisibility visibility = scene.visibility();
     std::vector<std::uint8_t> expected = occupiedByTheWords(scene, visibility, edge);
     const std::int64_t occupied = sites(expected);
@@ -54,22 +59,21 @@ RC_GTEST_PROP(Blocks, AreOccupiedOrFree, ()) {
         block = block == 0;
     }
     const FreeLengths map = built(buildBlocks(visibility, edge));
-    RC_ASSERT(map.counts == expected);
-    RC_ASSERT(map.occupiedBlocks == occupied);
-    RC_ASSERT(map.quantumMm == 0.0);
+    PROPERTY_ASSERT(map.counts == expected);
+    PROPERTY_ASSERT(map.occupiedBlocks == occupied);
+    PROPERTY_ASSERT(map.quantumMm == 0.0);
 }
 
 /// Grids long enough to reach 255 along any axis, and thin ones.
-RC_GTEST_PROP(ChebyshevTransform, IsTheDistanceBetweenAllPairs, ()) {
-    glm::ivec3 size(*rc::gen::inRange(1, 12), *rc::gen::inRange(1, 12), *rc::gen::inRange(1, 12));
-    if (*rc::gen::inRange(0, 3) == 0) {
-        size = glm::ivec3(*rc::gen::inRange(1, 3), *rc::gen::inRange(1, 3), 1);
-        size[*rc::gen::inRange(0, 3)] = *rc::gen::inRange(1, 600);
+PROPERTY(ChebyshevTransform, IsTheDistanceBetweenAllPairs) {
+    glm::ivec3 size(anyInt(1, 12), anyInt(1, 12), anyInt(1, 12));
+    if (anyInt(0, 3) == 0) {
+        size = glm::ivec3(anyInt(1, 3), anyInt(1, 3), 1);
+        size[anyInt(0, 3)] = anyInt(1, 600);
     }
     const int count = size.x * size.y * size.z;
     std::vector<std::uint8_t> marks(count);
-    for (const int site :
-         *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, std::max(1, count)))) {
+    for (const int site : anyInts(intsInRange(0, std::max(1, count)))) {
         marks[site] = 1;
     }
     std::vector<std::uint8_t> bytes(count);
@@ -79,7 +83,7 @@ RC_GTEST_PROP(ChebyshevTransform, IsTheDistanceBetweenAllPairs, ()) {
     transform.withinSlices(0, size.z);
     transform.upwards(0, size.z);
     transform.downwards(0, size.z);
-    RC_ASSERT(bytes == chebyshevByTheWords(marks, size));
+    PROPERTY_ASSERT(bytes == chebyshevByTheWords(marks, size));
 }
 
 /// Random free blocks, random points of the box that a block makes when it is grown by one block
@@ -104,17 +108,19 @@ void checkSamples(const SkipScene& scene, const FreeLengths& map, unsigned seed)
                                            glm::min(high * double(map.blockEdgeVoxels), inVolume),
                                            glm::floor(vec() * 3.0) / 2.0); // corners and middles
         for (const glm::dvec3 p : {anywhere, inside, inside + (2.0 * vec() - 1.0) * 0.99}) {
-            RC_ASSERT(lookUp(scene.table, test::fieldAt(scene, p)).a == 0.0);
+            PROPERTY_ASSERT(lookUp(scene.table, test::fieldAt(scene, p)).a == 0.0);
         }
     }
 }
 
-RC_GTEST_PROP(Chebyshev, NothingVisibleLiesInTheGrownBox, (unsigned seed)) {
+PROPERTY(Chebyshev, NothingVisibleLiesInTheGrownBox) {
+    const unsigned seed = anyBits();
     const SkipScene scene = randomScene(28);
     checkSamples(scene, built(buildChebyshev(scene.visibility(), randomEdge())), seed);
 }
 
-RC_GTEST_PROP(Blocks, NothingVisibleLiesInAFreeBlock, (unsigned seed)) {
+PROPERTY(Blocks, NothingVisibleLiesInAFreeBlock) {
+    const unsigned seed = anyBits();
     const SkipScene scene = randomScene(28);
     checkSamples(scene, built(buildBlocks(scene.visibility(), randomEdge())), seed);
 }
@@ -138,21 +144,22 @@ void runInPieces(const BuildStages& stages, unsigned seed) {
     }
 }
 
-RC_GTEST_PROP(BuildStages, InPiecesGiveWhatOneCallGives, (unsigned seed)) {
+PROPERTY(BuildStages, InPiecesGiveWhatOneCallGives) {
+    const unsigned seed = anyBits();
     SkipScene scene = randomScene(28);
-    const auto spacing = rc::gen::inRange(30, 300);
-    scene.geometry.spacingMm = glm::dvec3(*spacing, *spacing, *spacing) / 97.0;
+    const auto spacing = [] { return anyInt(30, 300); };
+    scene.geometry.spacingMm = glm::dvec3(spacing(), spacing(), spacing()) / 97.0;
     const int edge = randomEdge();
     const CellVisibility visibility = scene.visibility();
     const auto ranges = blockRanges(scene.codes, edge);
-    RC_ASSERT(ranges.has_value());
+    PROPERTY_ASSERT(ranges.has_value());
     FreeLengths result;
     runInPieces(blocksStages(*ranges, edge, visibility, result), seed);
-    RC_ASSERT(result == built(buildBlocks(visibility, edge)));
+    PROPERTY_ASSERT(result == built(buildBlocks(visibility, edge)));
     runInPieces(chebyshevStages(*ranges, edge, visibility, result), seed);
-    RC_ASSERT(result == built(buildChebyshev(visibility, edge)));
+    PROPERTY_ASSERT(result == built(buildChebyshev(visibility, edge)));
     runInPieces(proximityStages(*ranges, edge, visibility, scene.geometry, result), seed);
-    RC_ASSERT(result == built(buildProximityCloud(visibility, scene.geometry, edge)));
+    PROPERTY_ASSERT(result == built(buildProximityCloud(visibility, scene.geometry, edge)));
 }
 
 TEST(BuildStages, StopAtTheNextItemWhenCancelled) {

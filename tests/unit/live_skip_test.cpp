@@ -4,21 +4,26 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 
 #include "core/skip/blocks.h"
 #include "core/skip/chebyshev.h"
 #include "core/skip/occupancy.h"
 #include "core/skip/proximity_cloud.h"
+#include "tests/support/property.h"
 #include "tests/support/skip_scene.h"
 
 namespace slabcast {
 namespace {
 
+using test::anyBits;
+using test::anyBool;
+using test::anyElement;
+using test::anyInt;
 using test::bandTable;
 using test::constantScene;
 using test::fieldAt;
 using test::SkipScene;
+using test::tagCase;
 
 constexpr double kOneItem = 1e-6; // ms: less than any item takes
 constexpr double kAll = std::numeric_limits<double>::infinity();
@@ -119,10 +124,10 @@ bool visibleSamplesAreKept(const SkipScene& scene, const BuiltSkip& skip, std::u
 /// Bands anywhere, or nothing at all.
 TransferTable anyTable() {
     TransferTable table = bandTable(kTableSize, 0, -1);
-    const int bands = *rc::gen::inRange(0, 4);
+    const int bands = anyInt(0, 4);
     for (int band = 0; band < bands; ++band) {
-        const int first = *rc::gen::inRange(0, kTableSize);
-        const int length = *rc::gen::element(1, 3, 40);
+        const int first = anyInt(0, kTableSize);
+        const int length = anyElement(1, 3, 40);
         for (int k = first; k < std::min(first + length, kTableSize); ++k) {
             table.texels[k].a = 0.5F;
         }
@@ -132,7 +137,7 @@ TransferTable anyTable() {
 
 /// Of the same visible values, or fewer.
 TransferTable derivedTable(TransferTable table, bool fewer) {
-    const int first = *rc::gen::inRange(0, kTableSize);
+    const int first = anyInt(0, kTableSize);
     for (int k = 0; k < kTableSize; ++k) {
         table.texels[k].a *= fewer && k >= first && k < first + 30 ? 0.0F : 0.75F;
     }
@@ -142,15 +147,15 @@ TransferTable derivedTable(TransferTable table, bool fewer) {
 LiveOptions anyOptions() {
     LiveOptions options;
     options.always.structure =
-        *rc::gen::element(SkipStructure::BitfieldOctree, SkipStructure::BitfieldOctree,
-                          SkipStructure::MinMaxOctree, SkipStructure::Partitioned);
-    options.always.blockEdgeVoxels = *rc::gen::element(2, 2, 4);
-    options.always.bits = *rc::gen::element(16, 32, 128);
-    options.always.initialLevel = *rc::gen::inRange(0, 3);
-    options.settled.structure = *rc::gen::element(SkipStructure::Proximity,
-                                                  SkipStructure::Chebyshev, SkipStructure::Blocks);
-    options.settled.blockEdgeVoxels = *rc::gen::element(2, 2, 4);
-    options.quietFrames = *rc::gen::inRange(0, 3);
+        anyElement(SkipStructure::BitfieldOctree, SkipStructure::BitfieldOctree,
+                   SkipStructure::MinMaxOctree, SkipStructure::Partitioned);
+    options.always.blockEdgeVoxels = anyElement(2, 2, 4);
+    options.always.bits = anyElement(16, 32, 128);
+    options.always.initialLevel = anyInt(0, 3);
+    options.settled.structure =
+        anyElement(SkipStructure::Proximity, SkipStructure::Chebyshev, SkipStructure::Blocks);
+    options.settled.blockEdgeVoxels = anyElement(2, 2, 4);
+    options.quietFrames = anyInt(0, 3);
     return options;
 }
 
@@ -166,38 +171,37 @@ void settle(LiveSkip& live) {
     ASSERT_TRUE(live.isSettled());
 }
 
-RC_GTEST_PROP(LiveSkip, IsExactAtEveryMomentAndTightInTheEnd, ()) {
-    SkipScene scene = ballScene(*rc::gen::arbitrary<std::uint32_t>(),
-                                {*rc::gen::inRange(1, 30), *rc::gen::inRange(1, 24), 17});
+PROPERTY(LiveSkip, IsExactAtEveryMomentAndTightInTheEnd) {
+    SkipScene scene = ballScene(anyBits(), {anyInt(1, 30), anyInt(1, 24), 17});
     const LiveOptions options = anyOptions();
-    const bool hasPresent = *rc::gen::arbitrary<bool>();
+    const bool hasPresent = anyBool();
     auto live = LiveSkip::start(sourceOf(scene), options, scene.visibility(),
                                 builtNow(scene, hasPresent ? options.settled : options.always));
-    RC_ASSERT(live.has_value());
-    const int steps = *rc::gen::inRange(1, 12);
+    PROPERTY_ASSERT(live.has_value());
+    const int steps = anyInt(1, 12);
     for (int step = 0; step < steps; ++step) {
-        switch (*rc::gen::inRange(0, 6)) {
+        switch (anyInt(0, 6)) {
         case 0:
             scene.table = anyTable();
             live->edit(scene.visibility());
             break;
         case 1:
-            scene.table = derivedTable(scene.table, *rc::gen::arbitrary<bool>());
+            scene.table = derivedTable(scene.table, anyBool());
             live->edit(scene.visibility());
             break;
         default:
-            live->work(*rc::gen::element(0.0, kOneItem, kOneItem, kOneItem, kAll));
+            live->work(anyElement(0.0, kOneItem, kOneItem, kOneItem, kAll));
         }
-        RC_ASSERT(isSafe(scene, live->current()));
-        RC_ASSERT(visibleSamplesAreKept(scene, live->current(), std::uint32_t(step)));
+        PROPERTY_ASSERT(isSafe(scene, live->current()));
+        PROPERTY_ASSERT(visibleSamplesAreKept(scene, live->current(), std::uint32_t(step)));
     }
     settle(*live);
-    RC_ASSERT(live->current().options.structure == options.settled.structure);
-    RC_ASSERT(live->current().lengths->counts == freshGrid(scene, options.settled).counts);
+    PROPERTY_ASSERT(live->current().options.structure == options.settled.structure);
+    PROPERTY_ASSERT(live->current().lengths->counts == freshGrid(scene, options.settled).counts);
 }
 
-RC_GTEST_PROP(LiveSkip, MarkingWhatMayHaveChangedIsMarkingAll, ()) {
-    SkipScene scene = ballScene(*rc::gen::arbitrary<std::uint32_t>(), {64, 40, 33});
+PROPERTY(LiveSkip, MarkingWhatMayHaveChangedIsMarkingAll) {
+    SkipScene scene = ballScene(anyBits(), {64, 40, 33});
     scene.table = anyTable();
     const SkipOptions octreeOptions{
         .structure = SkipStructure::BitfieldOctree, .blockEdgeVoxels = 2, .initialLevel = 0};
@@ -208,12 +212,12 @@ RC_GTEST_PROP(LiveSkip, MarkingWhatMayHaveChangedIsMarkingAll, ()) {
     scene.table = anyTable();
     const auto now = std::make_shared<const CellVisibility>(scene.visibility());
     const BinSet bins = changedBins(*octree.bins, shownBefore, visibleValues(*now));
-    const int level = *rc::gen::inRange(0, 4);
+    const int level = anyInt(0, 4);
     ChangedRegions regions{level, visibleNodes(*octree.octree, {{bins[0], 0, 0, 0}}, level)};
     const std::size_t cubes = regions.cubes.size();
-    RC_TAG(cubes == 0                                          ? "no region"
-           : cubes < octree.octree->levels[level].words.size() ? "some regions"
-                                                               : "all regions");
+    tagCase(cubes == 0                                          ? "no region"
+            : cubes < octree.octree->levels[level].words.size() ? "some regions"
+                                                                : "all regions");
     const auto ranges = std::make_shared<const OctreeLevel>(*blockRanges(scene.codes, 2));
     GridRebuild rebuild({SkipStructure::Chebyshev, 2, scene.geometry, ranges}, now,
                         {before.lengths, std::move(regions)});
@@ -221,27 +225,27 @@ RC_GTEST_PROP(LiveSkip, MarkingWhatMayHaveChangedIsMarkingAll, ()) {
     }
     const FreeLengths fresh =
         freshGrid(scene, {.structure = SkipStructure::Chebyshev, .blockEdgeVoxels = 2});
-    RC_ASSERT(*rebuild.finish() == fresh);
+    PROPERTY_ASSERT(*rebuild.finish() == fresh);
 }
 
-RC_GTEST_PROP(LiveSkip, VisibleValuesTellWhichCellsAreVisible, ()) {
+PROPERTY(LiveSkip, VisibleValuesTellWhichCellsAreVisible) {
     SkipScene scene = constantScene(glm::ivec3(1), 0, anyTable());
-    const CellVisibility visibility = scene.visibility(*rc::gen::element(0.0, 0.4, 5.0));
+    const CellVisibility visibility = scene.visibility(anyElement(0.0, 0.4, 5.0));
     const VisibleValues values = visibleValues(visibility);
     for (int a = 0; a < 256; a += 3) {
         bool any = false;
         for (int b = a; b < 256; ++b) {
             any = any || (b > a && (values.shown[b - 1] & VisibleValues::kWithNext) != 0) ||
                   (values.shown[b] & VisibleValues::kAlone) != 0;
-            RC_ASSERT(visibility.visible(std::uint16_t(a), std::uint16_t(b)) == any);
+            PROPERTY_ASSERT(visibility.visible(std::uint16_t(a), std::uint16_t(b)) == any);
         }
     }
 }
 
-RC_GTEST_PROP(LiveSkip, CoversIsForEveryCell, ()) {
+PROPERTY(LiveSkip, CoversIsForEveryCell) {
     SkipScene scene = constantScene(glm::ivec3(1), 0, anyTable());
     const CellVisibility one = scene.visibility();
-    scene.table = *rc::gen::arbitrary<bool>() ? derivedTable(scene.table, true) : anyTable();
+    scene.table = anyBool() ? derivedTable(scene.table, true) : anyTable();
     const CellVisibility other = scene.visibility();
     bool covered = true;
     bool same = true;
@@ -253,10 +257,10 @@ RC_GTEST_PROP(LiveSkip, CoversIsForEveryCell, ()) {
             same = same && shownByOne == shownByOther;
         }
     }
-    RC_TAG(same ? "same" : covered ? "covered" : "more");
-    RC_ASSERT(covers(visibleValues(one), visibleValues(other)) == covered);
-    RC_ASSERT((visibleValues(one) == visibleValues(other)) == same);
-    RC_ASSERT(changedCodes(visibleValues(one), visibleValues(other)).has_value() == !same);
+    tagCase(same ? "same" : covered ? "covered" : "more");
+    PROPERTY_ASSERT(covers(visibleValues(one), visibleValues(other)) == covered);
+    PROPERTY_ASSERT((visibleValues(one) == visibleValues(other)) == same);
+    PROPERTY_ASSERT(changedCodes(visibleValues(one), visibleValues(other)).has_value() == !same);
 }
 
 /// A bright ball in a dim one, both shown.

@@ -3,19 +3,26 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 
 #include "core/draw/visible_boxes.h"
 #include "core/skip/bitfield_octree.h"
 #include "core/skip/boolean_octree.h"
 #include "core/skip/minmax_octree.h"
 #include "tests/support/octree_look.h"
+#include "tests/support/property.h"
 #include "tests/support/skip_blocks.h"
 
 namespace slabcast {
 namespace {
 
+using test::anyBits;
+using test::anyBool;
+using test::anyElement;
+using test::anyInt;
+using test::anyPairs;
 using test::forBox;
+using test::intsInRange;
+using test::intsOf;
 using test::lookAt;
 using test::OctreeLook;
 using test::SkipScene;
@@ -23,11 +30,9 @@ using test::SkipScene;
 /// Up to three visible bands, of values that voxels have or that lie between, in a table with a
 /// texel per value, or more or fewer.
 TransferTable randomTable() {
-    const int size = *rc::gen::element(256, 256, 64, 1021);
+    const int size = anyElement(256, 256, 64, 1021);
     TransferTable table{0.0, 255.0, std::vector<glm::vec4>(size, glm::vec4(0.0F))};
-    const auto bands =
-        *rc::gen::resize(3, rc::gen::container<std::vector<std::pair<int, int>>>(rc::gen::pair(
-                                rc::gen::inRange(0, size), rc::gen::element(0, 1, 5, 100))));
+    const auto bands = anyPairs(3, intsInRange(0, size), intsOf({0, 1, 5, 100}));
     for (const auto& [first, length] : bands) {
         for (int k = first; k <= std::min(size - 1, first + length); ++k) {
             table.texels[k] = glm::vec4(1.0F, 1.0F, 1.0F, 0.5F);
@@ -37,14 +42,14 @@ TransferTable randomTable() {
 }
 
 SkipScene randomScene(int largestDim) {
-    return test::oddVoxels(largestDim, *rc::gen::inRange(0, 256), randomTable());
+    return test::oddVoxels(largestDim, anyInt(0, 256), randomTable());
 }
 
 SkipOptions randomOptions() {
     SkipOptions options;
-    options.blockEdgeVoxels = *rc::gen::element(2, 4, 8, 16);
-    options.bits = *rc::gen::element(8, 16, 32, 64, 128);
-    options.initialLevel = *rc::gen::inRange(0, 4);
+    options.blockEdgeVoxels = anyElement(2, 4, 8, 16);
+    options.bits = anyElement(8, 16, 32, 64, 128);
+    options.initialLevel = anyInt(0, 4);
     return options;
 }
 
@@ -54,12 +59,11 @@ ValueBins evenBins(const SkipScene& scene, int count) {
 
 ValueBins randomBins(const SkipScene& scene, int count) {
     std::optional<std::array<double, 2>> trimmed;
-    if (*rc::gen::arbitrary<bool>()) {
-        const int low = *rc::gen::inRange(0, 200);
-        trimmed = {double(low), double(low + *rc::gen::inRange(1, 56))};
+    if (anyBool()) {
+        const int low = anyInt(0, 200);
+        trimmed = {double(low), double(low + anyInt(1, 56))};
     }
-    return valueBins(scene.codes, codeRange(scene.codes), count, *rc::gen::arbitrary<bool>(),
-                     trimmed);
+    return valueBins(scene.codes, codeRange(scene.codes), count, anyBool(), trimmed);
 }
 
 /// Octrees that know nothing of the scene's TF, but for the Boolean one.
@@ -87,19 +91,6 @@ void forEachOctree(const Octrees& octrees, const CellVisibility& visibility, Vis
     visit(octrees.boolean, booleanNodeTest());
     visit(octrees.minMax, minMaxNodeTest(visibility));
     visit(octrees.bitfield.octree, bitfieldNodeTest(octrees.bitfield.bins, visibility));
-}
-
-/// Many small cases: ten times as many as is usual.
-template <class Testable>
-void checkMany(const Testable& testable) {
-    rc::detail::TestParams params = rc::detail::configuration().testParams;
-    params.maxSuccess *= 10;
-    const auto result = rc::detail::checkTestable(testable, rc::detail::TestMetadata{}, params);
-    if (!result.template is<rc::detail::SuccessResult>()) {
-        std::ostringstream text;
-        rc::detail::printResultMessage(result, text);
-        ADD_FAILURE() << text.str();
-    }
 }
 
 /// What the cells say that meet a node grown by one voxel, each looked at by itself.
@@ -155,22 +146,22 @@ OctreeLevel levelByTheWords(const Octree& octree, glm::ivec3 dims, int edge,
     return level;
 }
 
-TEST(Octree, EveryLevelIsWhatItsCellsSay) {
-    checkMany([] {
-        const SkipScene scene = randomScene(12);
-        const SkipOptions options = randomOptions();
-        const Octrees octrees = built(scene, options);
-        const glm::ivec3 dims = scene.geometry.dims;
-        for (int k = 0; k <= octrees.minMax.coarsest(); ++k) {
-            const int edge = options.blockEdgeVoxels << k;
-            const auto contents = contentsByTheWords(scene, octrees.bitfield.bins, edge);
-            forEachOctree(octrees, scene.visibility(), [&](const Octree& octree, const NodeTest&) {
-                RC_ASSERT(octree.leafEdgeVoxels == options.blockEdgeVoxels);
-                RC_ASSERT(octree.coarsest() == octrees.minMax.coarsest());
-                RC_ASSERT(octree.levels[k] == levelByTheWords(octree, dims, edge, contents));
-            });
-        }
-    });
+// Many small cases: ten times as many as is usual.
+
+PROPERTY_TIMES(10, Octree, EveryLevelIsWhatItsCellsSay) {
+    const SkipScene scene = randomScene(12);
+    const SkipOptions options = randomOptions();
+    const Octrees octrees = built(scene, options);
+    const glm::ivec3 dims = scene.geometry.dims;
+    for (int k = 0; k <= octrees.minMax.coarsest(); ++k) {
+        const int edge = options.blockEdgeVoxels << k;
+        const auto contents = contentsByTheWords(scene, octrees.bitfield.bins, edge);
+        forEachOctree(octrees, scene.visibility(), [&](const Octree& octree, const NodeTest&) {
+            PROPERTY_ASSERT(octree.leafEdgeVoxels == options.blockEdgeVoxels);
+            PROPERTY_ASSERT(octree.coarsest() == octrees.minMax.coarsest());
+            PROPERTY_ASSERT(octree.levels[k] == levelByTheWords(octree, dims, edge, contents));
+        });
+    }
 }
 
 /// Random points in a node and up to half a voxel around it.
@@ -180,7 +171,8 @@ void checkShowsNothing(const SkipScene& scene, int edge, glm::ivec3 node, std::m
     const glm::dvec3 high = glm::dvec3(glm::min((node + 1) * edge, scene.geometry.dims)) + 0.5;
     for (int i = 0; i < 20; ++i) {
         const glm::dvec3 at(unit(random), unit(random), unit(random));
-        RC_ASSERT(lookUp(scene.table, test::fieldAt(scene, glm::mix(low, high, at))).a == 0.0);
+        PROPERTY_ASSERT(lookUp(scene.table, test::fieldAt(scene, glm::mix(low, high, at))).a ==
+                        0.0);
     }
 }
 
@@ -190,8 +182,8 @@ void checkFreeNodes(const SkipScene& scene, const Octree& octree, const NodeTest
     for (int k = 0; k <= octree.coarsest(); ++k) {
         const glm::ivec3 nodes = octree.levels[k].nodes;
         forBox(glm::ivec3(0), nodes, [&](glm::ivec3 node) {
-            RC_ASSERT(!isFree(octree, octree.node(k, node), test) ||
-                      *visibleCells.node(k, node) == 0);
+            PROPERTY_ASSERT(!isFree(octree, octree.node(k, node), test) ||
+                            *visibleCells.node(k, node) == 0);
         });
         for (int i = 0; i < 4; ++i) {
             const glm::ivec3 node(random() % nodes.x, random() % nodes.y, random() % nodes.z);
@@ -202,142 +194,128 @@ void checkFreeNodes(const SkipScene& scene, const Octree& octree, const NodeTest
     }
 }
 
-TEST(Octree, FreeNodesShowNothing) {
-    checkMany([] {
-        SkipScene scene = randomScene(20);
-        std::mt19937 random(*rc::gen::arbitrary<unsigned>());
-        const Octrees octrees = built(scene, randomOptions());
-        forEachOctree(octrees, scene.visibility(), [&](const Octree& octree, const NodeTest& test) {
-            checkFreeNodes(scene, octree, test, octrees.boolean, random);
-        });
-        // Another TF: the octrees that know nothing of the first go on as they are.
-        scene.table = randomTable();
-        const CellVisibility other = scene.visibility();
-        const Octree cells = booleanOctree(octrees.minMax, other);
-        checkFreeNodes(scene, octrees.minMax, minMaxNodeTest(other), cells, random);
-        checkFreeNodes(scene, octrees.bitfield.octree,
-                       bitfieldNodeTest(octrees.bitfield.bins, other), cells, random);
+PROPERTY_TIMES(10, Octree, FreeNodesShowNothing) {
+    SkipScene scene = randomScene(20);
+    std::mt19937 random(anyBits());
+    const Octrees octrees = built(scene, randomOptions());
+    forEachOctree(octrees, scene.visibility(), [&](const Octree& octree, const NodeTest& test) {
+        checkFreeNodes(scene, octree, test, octrees.boolean, random);
     });
+    // Another TF: the octrees that know nothing of the first go on as they are.
+    scene.table = randomTable();
+    const CellVisibility other = scene.visibility();
+    const Octree cells = booleanOctree(octrees.minMax, other);
+    checkFreeNodes(scene, octrees.minMax, minMaxNodeTest(other), cells, random);
+    checkFreeNodes(scene, octrees.bitfield.octree, bitfieldNodeTest(octrees.bitfield.bins, other),
+                   cells, random);
 }
 
-TEST(Octree, VisibleNodesAreThoseThatAreNotFree) {
-    checkMany([] {
-        const SkipScene scene = randomScene(28);
-        const Octrees octrees = built(scene, randomOptions());
-        forEachOctree(octrees, scene.visibility(), [](const Octree& octree, const NodeTest& test) {
-            for (int k = 0; k <= octree.coarsest(); ++k) {
-                std::vector<glm::ivec3> found = visibleNodes(octree, test, k);
-                std::size_t expected = 0;
-                forBox(glm::ivec3(0), octree.levels[k].nodes, [&](glm::ivec3 node) {
-                    if (!isFree(octree, octree.node(k, node), test)) {
-                        ++expected;
-                        RC_ASSERT(std::find(found.begin(), found.end(), node) != found.end());
-                    }
-                });
-                RC_ASSERT(found.size() == expected);
-            }
-            RC_ASSERT(visibleLeaves(octree, test) ==
-                      std::int64_t(visibleNodes(octree, test, 0).size()));
-        });
+PROPERTY_TIMES(10, Octree, VisibleNodesAreThoseThatAreNotFree) {
+    const SkipScene scene = randomScene(28);
+    const Octrees octrees = built(scene, randomOptions());
+    forEachOctree(octrees, scene.visibility(), [](const Octree& octree, const NodeTest& test) {
+        for (int k = 0; k <= octree.coarsest(); ++k) {
+            std::vector<glm::ivec3> found = visibleNodes(octree, test, k);
+            std::size_t expected = 0;
+            forBox(glm::ivec3(0), octree.levels[k].nodes, [&](glm::ivec3 node) {
+                if (!isFree(octree, octree.node(k, node), test)) {
+                    ++expected;
+                    PROPERTY_ASSERT(std::find(found.begin(), found.end(), node) != found.end());
+                }
+            });
+            PROPERTY_ASSERT(found.size() == expected);
+        }
+        PROPERTY_ASSERT(visibleLeaves(octree, test) ==
+                        std::int64_t(visibleNodes(octree, test, 0).size()));
     });
 }
 
 /// With a texel per value, so that no value is visible between two codes alone: of two bins around
 /// such a one, more bits may mark the other.
-TEST(Octree, MoreBitsVisitNoMoreLeaves) {
-    checkMany([] {
-        SkipScene scene = randomScene(28);
-        if (scene.table.texels.size() != 256) {
-            scene.table = test::bandTable(256, 100, 120);
-        }
-        const CellVisibility visibility = scene.visibility();
-        SkipOptions options = randomOptions();
-        std::int64_t fewest = std::int64_t(scene.codes.codes.size());
-        for (const int bits : {8, 16, 32, 64, 128}) {
-            options.bits = bits;
-            const Octrees octrees = built(scene, options, evenBins(scene, bits));
-            const auto& [octree, bins] = octrees.bitfield;
-            const std::int64_t leaves = visibleLeaves(octree, bitfieldNodeTest(bins, visibility));
-            RC_ASSERT(leaves <= fewest);
-            RC_ASSERT(leaves >= visibleLeaves(octrees.boolean, booleanNodeTest()));
-            fewest = leaves;
-        }
-    });
+PROPERTY_TIMES(10, Octree, MoreBitsVisitNoMoreLeaves) {
+    SkipScene scene = randomScene(28);
+    if (scene.table.texels.size() != 256) {
+        scene.table = test::bandTable(256, 100, 120);
+    }
+    const CellVisibility visibility = scene.visibility();
+    SkipOptions options = randomOptions();
+    std::int64_t fewest = std::int64_t(scene.codes.codes.size());
+    for (const int bits : {8, 16, 32, 64, 128}) {
+        options.bits = bits;
+        const Octrees octrees = built(scene, options, evenBins(scene, bits));
+        const auto& [octree, bins] = octrees.bitfield;
+        const std::int64_t leaves = visibleLeaves(octree, bitfieldNodeTest(bins, visibility));
+        PROPERTY_ASSERT(leaves <= fewest);
+        PROPERTY_ASSERT(leaves >= visibleLeaves(octrees.boolean, booleanNodeTest()));
+        fewest = leaves;
+    }
 }
 
 /// A TF without a gap is what its range says of it.
-TEST(Octree, OneRangeOfVisibleValuesIsExact) {
-    checkMany([] {
-        SkipScene scene = randomScene(20);
-        const int first = *rc::gen::inRange(0, 256);
-        scene.table = test::bandTable(256, first, std::min(255, first + *rc::gen::inRange(0, 100)));
-        const Octrees octrees = built(scene, randomOptions());
-        RC_ASSERT(visibleLeaves(octrees.minMax, minMaxNodeTest(scene.visibility())) ==
-                  visibleLeaves(octrees.boolean, booleanNodeTest()));
-    });
+PROPERTY_TIMES(10, Octree, OneRangeOfVisibleValuesIsExact) {
+    SkipScene scene = randomScene(20);
+    const int first = anyInt(0, 256);
+    scene.table = test::bandTable(256, first, std::min(255, first + anyInt(0, 100)));
+    const Octrees octrees = built(scene, randomOptions());
+    PROPERTY_ASSERT(visibleLeaves(octrees.minMax, minMaxNodeTest(scene.visibility())) ==
+                    visibleLeaves(octrees.boolean, booleanNodeTest()));
 }
 
 /// From any level looks end at a free node or the leaf, top-down at the largest one, and go on as
 /// the traversal says.
-TEST(Octree, LooksEndAtAFreeNodeOrTheLeaf) {
-    checkMany([] {
-        const SkipScene scene = randomScene(28);
-        SkipOptions options = randomOptions();
-        options.blockEdgeVoxels = 2;
-        const Octrees octrees = built(scene, options);
-        std::mt19937 random(*rc::gen::arbitrary<unsigned>());
-        forEachOctree(octrees, scene.visibility(), [&](const Octree& octree, const NodeTest& test) {
-            const auto freeAt = [&](int level, glm::ivec3 leaf) {
-                return isFree(octree, octree.node(level, leaf >> level), test);
-            };
-            for (int i = 0; i < 20; ++i) {
-                const glm::ivec3 leaves = octree.levels[0].nodes;
-                const glm::ivec3 leaf(random() % leaves.x, random() % leaves.y,
-                                      random() % leaves.z);
-                for (const Traversal traversal : {Traversal::Bidirectional, Traversal::TopDown}) {
-                    const bool topDown = traversal == Traversal::TopDown;
-                    const int from =
-                        topDown ? octree.coarsest() : int(random() % octree.levels.size());
-                    int largest = from;
-                    while (largest >= 0 && !freeAt(largest, leaf)) {
-                        --largest;
-                    }
-                    OctreeLook look = lookAt(octree, test, leaf, traversal, from);
-                    int looks = 1;
-                    for (; look.again; ++looks) {
-                        look = lookAt(octree, test, leaf, traversal, look.nextLevel);
-                    }
-                    const int level = std::max(largest, 0);
-                    RC_ASSERT(look.level == level);
-                    RC_ASSERT(look.free == (largest >= 0));
-                    RC_ASSERT(looks == from - level + 1);
-                    const int up = std::min(level + (look.free ? 1 : 0), octree.coarsest());
-                    RC_ASSERT(look.nextLevel == (topDown ? octree.coarsest() : up));
+PROPERTY_TIMES(10, Octree, LooksEndAtAFreeNodeOrTheLeaf) {
+    const SkipScene scene = randomScene(28);
+    SkipOptions options = randomOptions();
+    options.blockEdgeVoxels = 2;
+    const Octrees octrees = built(scene, options);
+    std::mt19937 random(anyBits());
+    forEachOctree(octrees, scene.visibility(), [&](const Octree& octree, const NodeTest& test) {
+        const auto freeAt = [&](int level, glm::ivec3 leaf) {
+            return isFree(octree, octree.node(level, leaf >> level), test);
+        };
+        for (int i = 0; i < 20; ++i) {
+            const glm::ivec3 leaves = octree.levels[0].nodes;
+            const glm::ivec3 leaf(random() % leaves.x, random() % leaves.y, random() % leaves.z);
+            for (const Traversal traversal : {Traversal::Bidirectional, Traversal::TopDown}) {
+                const bool topDown = traversal == Traversal::TopDown;
+                const int from = topDown ? octree.coarsest() : int(random() % octree.levels.size());
+                int largest = from;
+                while (largest >= 0 && !freeAt(largest, leaf)) {
+                    --largest;
                 }
+                OctreeLook look = lookAt(octree, test, leaf, traversal, from);
+                int looks = 1;
+                for (; look.again; ++looks) {
+                    look = lookAt(octree, test, leaf, traversal, look.nextLevel);
+                }
+                const int level = std::max(largest, 0);
+                PROPERTY_ASSERT(look.level == level);
+                PROPERTY_ASSERT(look.free == (largest >= 0));
+                PROPERTY_ASSERT(looks == from - level + 1);
+                const int up = std::min(level + (look.free ? 1 : 0), octree.coarsest());
+                PROPERTY_ASSERT(look.nextLevel == (topDown ? octree.coarsest() : up));
             }
-        });
+        }
     });
 }
 
-TEST(Octree, BoxesAreThoseOfTheOccupiedBlocks) {
-    checkMany([] {
-        const SkipScene scene = randomScene(40);
-        const SkipOptions options = randomOptions();
-        const auto octree = buildBooleanOctree(scene.visibility(), options);
-        RC_ASSERT(octree.has_value());
-        const OctreeLevel& leaves = octree->levels.front();
-        FreeLengths lengths{.blocks = leaves.nodes, .blockEdgeVoxels = options.blockEdgeVoxels};
-        for (const std::uint32_t occupied : leaves.words) {
-            lengths.counts.push_back(occupied != 0 ? 0 : 1);
-        }
-        const auto expected = visibleBoxes(lengths, scene.geometry, 1.5);
-        const auto boxes = visibleBoxes(*octree, booleanNodeTest(), scene.geometry, 1.5);
-        RC_ASSERT(boxes.size() == expected.size());
-        for (std::size_t i = 0; i < boxes.size(); ++i) {
-            RC_ASSERT(boxes[i].low == expected[i].low);
-            RC_ASSERT(boxes[i].high == expected[i].high);
-        }
-    });
+PROPERTY_TIMES(10, Octree, BoxesAreThoseOfTheOccupiedBlocks) {
+    const SkipScene scene = randomScene(40);
+    const SkipOptions options = randomOptions();
+    const auto octree = buildBooleanOctree(scene.visibility(), options);
+    PROPERTY_ASSERT(octree.has_value());
+    const OctreeLevel& leaves = octree->levels.front();
+    FreeLengths lengths{.blocks = leaves.nodes, .blockEdgeVoxels = options.blockEdgeVoxels};
+    for (const std::uint32_t occupied : leaves.words) {
+        lengths.counts.push_back(occupied != 0 ? 0 : 1);
+    }
+    const auto expected = visibleBoxes(lengths, scene.geometry, 1.5);
+    const auto boxes = visibleBoxes(*octree, booleanNodeTest(), scene.geometry, 1.5);
+    PROPERTY_ASSERT(boxes.size() == expected.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        PROPERTY_ASSERT(boxes[i].low == expected[i].low);
+        PROPERTY_ASSERT(boxes[i].high == expected[i].high);
+    }
 }
 
 /// Small grains of two materials in a bulk whose value lies between theirs, and is not visible.

@@ -1,16 +1,23 @@
 #include "core/skip/partitioned_maps.h"
 
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 
 #include "core/skip/chebyshev.h"
+#include "tests/support/property.h"
 #include "tests/support/skip_blocks.h"
 
 namespace slabcast {
 namespace {
 
+using test::anyBool;
+using test::anyElement;
+using test::anyInt;
+using test::anyInts;
 using test::bandTable;
 using test::constantScene;
+using test::intsInRange;
+using test::intsOf;
+using test::intsOfEither;
 using test::randomEdge;
 using test::randomScene;
 using test::SkipScene;
@@ -21,17 +28,16 @@ SkipOptions partitionedOptions(int partitions, int edge) {
 }
 
 SkipOptions randomOptions() {
-    return partitionedOptions(*rc::gen::element(16, 16, 32, 64, 128, 256), randomEdge());
+    return partitionedOptions(anyElement(16, 16, 32, 64, 128, 256), randomEdge());
 }
 
 ValueBins randomBins(const SkipScene& scene, int partitions) {
     std::optional<std::array<double, 2>> trimmed;
-    if (*rc::gen::arbitrary<bool>()) {
-        const double low = *rc::gen::inRange(0, 200);
-        trimmed = {low, low + *rc::gen::inRange(1, 56)};
+    if (anyBool()) {
+        const double low = anyInt(0, 200);
+        trimmed = {low, low + anyInt(1, 56)};
     }
-    return valueBins(scene.codes, codeRange(scene.codes), partitions, *rc::gen::arbitrary<bool>(),
-                     trimmed);
+    return valueBins(scene.codes, codeRange(scene.codes), partitions, anyBool(), trimmed);
 }
 
 PartitionedMaps built(const SkipScene& scene, const ValueBins& bins, const SkipOptions& options) {
@@ -56,8 +62,7 @@ BinSet setOf(const std::vector<int>& bins) {
 
 /// Some of them, the last one often.
 std::vector<int> randomMembers(int bins) {
-    return *rc::gen::container<std::vector<int>>(
-        rc::gen::oneOf(rc::gen::inRange(0, bins), rc::gen::just(bins - 1)));
+    return anyInts(intsOfEither(intsInRange(0, bins), intsOf({bins - 1})));
 }
 
 /// A cell is visible where a visible code lies between its corners, both included: no more, no
@@ -74,25 +79,25 @@ CellVisibility visibilityOfCodes(const TexelCodes& codes, const std::vector<bool
     return visibility;
 }
 
-RC_GTEST_PROP(PartitionedMaps, AreTheDistancesToCellsWithTheirValues, ()) {
+PROPERTY(PartitionedMaps, AreTheDistancesToCellsWithTheirValues) {
     const SkipScene scene = randomScene(16);
     const SkipOptions options = randomOptions();
     const ValueBins bins = randomBins(scene, options.partitions);
     const PartitionedMaps maps = built(scene, bins, options);
-    RC_ASSERT(maps.blocks ==
-              (scene.geometry.dims + options.blockEdgeVoxels - 1) / options.blockEdgeVoxels);
-    RC_ASSERT(maps.blockEdgeVoxels == options.blockEdgeVoxels);
-    RC_ASSERT(maps.bins.binOfCode == bins.binOfCode);
+    PROPERTY_ASSERT(maps.blocks ==
+                    (scene.geometry.dims + options.blockEdgeVoxels - 1) / options.blockEdgeVoxels);
+    PROPERTY_ASSERT(maps.blockEdgeVoxels == options.blockEdgeVoxels);
+    PROPERTY_ASSERT(maps.bins.binOfCode == bins.binOfCode);
     for (int p = 0; p < options.partitions; ++p) {
         const auto occupied = test::blocksThatCellsMeet(
             scene, options.blockEdgeVoxels, [&](std::uint16_t least, std::uint16_t greatest) {
                 return bins.binOfCode[least] <= p && p <= bins.binOfCode[greatest];
             });
-        RC_ASSERT(mapOf(maps, p) == test::chebyshevByTheWords(occupied, maps.blocks));
+        PROPERTY_ASSERT(mapOf(maps, p) == test::chebyshevByTheWords(occupied, maps.blocks));
     }
 }
 
-RC_GTEST_PROP(PartitionedMaps, MergeToTheLeastDistance, ()) {
+PROPERTY(PartitionedMaps, MergeToTheLeastDistance) {
     const SkipScene scene = randomScene(24);
     const SkipOptions options = randomOptions();
     const PartitionedMaps maps = built(scene, randomBins(scene, options.partitions), options);
@@ -105,27 +110,27 @@ RC_GTEST_PROP(PartitionedMaps, MergeToTheLeastDistance, ()) {
         }
     }
     const FreeLengths result = merged(maps, setOf(members));
-    RC_ASSERT(result.blocks == maps.blocks);
-    RC_ASSERT(result.blockEdgeVoxels == maps.blockEdgeVoxels);
-    RC_ASSERT(result.quantumMm == 0.0);
-    RC_ASSERT(result.counts == least);
-    RC_ASSERT(result.occupiedBlocks == std::count(least.begin(), least.end(), 0));
+    PROPERTY_ASSERT(result.blocks == maps.blocks);
+    PROPERTY_ASSERT(result.blockEdgeVoxels == maps.blockEdgeVoxels);
+    PROPERTY_ASSERT(result.quantumMm == 0.0);
+    PROPERTY_ASSERT(result.counts == least);
+    PROPERTY_ASSERT(result.occupiedBlocks == std::count(least.begin(), least.end(), 0));
 }
 
-RC_GTEST_PROP(PartitionedMaps, AreNowhereFreerThanTheTransferFunction, ()) {
+PROPERTY(PartitionedMaps, AreNowhereFreerThanTheTransferFunction) {
     const SkipScene scene = randomScene(24);
     const SkipOptions options = randomOptions();
     const PartitionedMaps maps = built(scene, randomBins(scene, options.partitions), options);
-    const CellVisibility visibility = scene.visibility(*rc::gen::element(0.0, 0.7));
+    const CellVisibility visibility = scene.visibility(anyElement(0.0, 0.7));
     const FreeLengths result = merged(maps, visibleBins(maps.bins, visibility));
     const auto exact = buildChebyshev(visibility, options.blockEdgeVoxels);
-    RC_ASSERT(exact.has_value());
+    PROPERTY_ASSERT(exact.has_value());
     for (std::size_t i = 0; i < result.counts.size(); ++i) {
-        RC_ASSERT(result.counts[i] <= exact->counts[i]);
+        PROPERTY_ASSERT(result.counts[i] <= exact->counts[i]);
     }
 }
 
-RC_GTEST_PROP(PartitionedMaps, OfWholePartitionsAreExact, ()) {
+PROPERTY(PartitionedMaps, OfWholePartitionsAreExact) {
     const SkipScene scene = randomScene(24);
     const SkipOptions options = randomOptions();
     const PartitionedMaps maps = built(scene, randomBins(scene, options.partitions), options);
@@ -137,8 +142,8 @@ RC_GTEST_PROP(PartitionedMaps, OfWholePartitionsAreExact, ()) {
     }
     const CellVisibility visibility = visibilityOfCodes(scene.codes, visible);
     const auto exact = buildChebyshev(visibility, options.blockEdgeVoxels);
-    RC_ASSERT(exact.has_value());
-    RC_ASSERT(merged(maps, visibleBins(maps.bins, visibility)) == *exact);
+    PROPERTY_ASSERT(exact.has_value());
+    PROPERTY_ASSERT(merged(maps, visibleBins(maps.bins, visibility)) == *exact);
 }
 
 /// Larger than what one thread takes at once.

@@ -3,13 +3,16 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 
+#include "tests/support/property.h"
 #include "tests/support/skip_blocks.h"
 
 namespace slabcast {
 namespace {
 
+using test::anyBits;
+using test::anyElement;
+using test::anyInt;
 using test::bandTable;
 using test::constantScene;
 using test::forBox;
@@ -42,47 +45,47 @@ FreeLengths built(const SkipScene& scene, int edge) {
     return *cloud;
 }
 
-RC_GTEST_PROP(ProximityCloud, OccupiesTheBlocksThatVisibleCellsMeet, ()) {
+PROPERTY(ProximityCloud, OccupiesTheBlocksThatVisibleCellsMeet) {
     const SkipScene scene = randomScene(20);
     const int edge = randomEdge();
     const std::vector<std::uint8_t> expected = occupiedByTheWords(scene, scene.visibility(), edge);
     const FreeLengths cloud = built(scene, edge);
     forBox(glm::ivec3(0), cloud.blocks, [&](glm::ivec3 block) {
         const bool occupied = expected[indexOf(block, cloud.blocks)] != 0;
-        RC_ASSERT((cloud.counts[indexOf(block, cloud.blocks)] == 0) == occupied);
+        PROPERTY_ASSERT((cloud.counts[indexOf(block, cloud.blocks)] == 0) == occupied);
     });
-    RC_ASSERT(cloud.occupiedBlocks == std::count(expected.begin(), expected.end(), 1));
+    PROPERTY_ASSERT(cloud.occupiedBlocks == std::count(expected.begin(), expected.end(), 1));
 }
 
 /// Checks every free block against all pairs. `loss`: the part of a length that rounding may take.
 void checkLengths(const SkipScene& scene, int edge, double loss) {
     const FreeLengths cloud = built(scene, edge);
     const std::vector<std::uint8_t> occupied = occupiedByTheWords(scene, scene.visibility(), edge);
-    RC_ASSERT(cloud.quantumMm == scene.geometry.smallestVoxelEdgeMm());
+    PROPERTY_ASSERT(cloud.quantumMm == scene.geometry.smallestVoxelEdgeMm());
     forBox(glm::ivec3(0), cloud.blocks, [&](glm::ivec3 block) {
         const int stored = cloud.counts[indexOf(block, cloud.blocks)];
         const double quanta = nearestInQuanta(block, cloud.blocks, occupied, scene.geometry, edge);
         if (quanta < 0.0) {
-            RC_ASSERT(stored == 255);
+            PROPERTY_ASSERT(stored == 255);
         } else if (stored > 0) {
-            RC_ASSERT(stored <= std::min(255, 1 + int(quanta * (1.0 + 1.1e-5))));
-            RC_ASSERT(stored >= std::min(255, 1 + int(quanta * (1.0 - loss))));
+            PROPERTY_ASSERT(stored <= std::min(255, 1 + int(quanta * (1.0 + 1.1e-5))));
+            PROPERTY_ASSERT(stored >= std::min(255, 1 + int(quanta * (1.0 - loss))));
         }
     });
 }
 
-RC_GTEST_PROP(ProximityCloud, LengthsAreExactForDyadicSpacing, ()) {
+PROPERTY(ProximityCloud, LengthsAreExactForDyadicSpacing) {
     SkipScene scene = randomScene(24);
-    const auto ratio = rc::gen::element(1.0, 1.25, 2.0, 3.0625, 40.0);
-    scene.geometry.spacingMm = 0.5 * glm::dvec3(*ratio, *ratio, *ratio);
-    scene.geometry.spacingMm[*rc::gen::inRange(0, 3)] = 0.5;
+    const auto ratio = [] { return anyElement(1.0, 1.25, 2.0, 3.0625, 40.0); };
+    scene.geometry.spacingMm = 0.5 * glm::dvec3(ratio(), ratio(), ratio());
+    scene.geometry.spacingMm[anyInt(0, 3)] = 0.5;
     checkLengths(scene, randomEdge(), 0.0);
 }
 
-RC_GTEST_PROP(ProximityCloud, LengthsAreLowerBoundsForAnySpacing, ()) {
+PROPERTY(ProximityCloud, LengthsAreLowerBoundsForAnySpacing) {
     SkipScene scene = randomScene(24);
-    const auto spacing = rc::gen::inRange(1, 500);
-    scene.geometry.spacingMm = glm::dvec3(*spacing, *spacing, *spacing) / 97.0;
+    const auto spacing = [] { return anyInt(1, 500); };
+    scene.geometry.spacingMm = glm::dvec3(spacing(), spacing(), spacing()) / 97.0;
     checkLengths(scene, randomEdge(), 1.0 / 256.0);
 }
 
@@ -117,18 +120,19 @@ void checkSamples(const SkipScene& scene, const FreeLengths& cloud, unsigned see
             const glm::dvec3 point = start + step * (free * share);
             const glm::dvec3 beside = point + (2.0 * vec(unit) - 1.0) * 0.99;
             for (const glm::dvec3 p : {point, beside, glm::clamp(point, glm::dvec3(0.0), dims)}) {
-                RC_ASSERT(lookUp(scene.table, test::fieldAt(scene, p)).a == 0.0);
+                PROPERTY_ASSERT(lookUp(scene.table, test::fieldAt(scene, p)).a == 0.0);
             }
         }
     }
 }
 
-RC_GTEST_PROP(ProximityCloud, NothingVisibleLiesWithinTheFreeLength, (unsigned seed)) {
+PROPERTY(ProximityCloud, NothingVisibleLiesWithinTheFreeLength) {
+    const unsigned seed = anyBits();
     SkipScene scene = randomScene(28);
-    const auto spacing = rc::gen::inRange(30, 300);
-    scene.geometry.spacingMm = glm::dvec3(*spacing, *spacing, *spacing) / 97.0;
-    const auto shear = rc::gen::inRange(-70, 70);
-    const glm::dvec3 tilt = glm::dvec3(*shear, *shear, *shear) / 100.0;
+    const auto spacing = [] { return anyInt(30, 300); };
+    scene.geometry.spacingMm = glm::dvec3(spacing(), spacing(), spacing()) / 97.0;
+    const auto shear = [] { return anyInt(-70, 70); };
+    const glm::dvec3 tilt = glm::dvec3(shear(), shear(), shear()) / 100.0;
     scene.geometry.direction =
         glm::dmat3(glm::dvec3(1.0, 0.0, 0.0), glm::normalize(glm::dvec3(tilt.x, 1.0, 0.0)),
                    glm::normalize(glm::dvec3(tilt.y, tilt.z, 1.0)));

@@ -1,13 +1,16 @@
 #include <cstring>
 
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
 
 #include "core/volume/downsample.h"
 #include "core/volume/resample.h"
+#include "tests/support/property.h"
 
 namespace slabcast {
 namespace {
+
+using test::anyBits;
+using test::anyInt;
 
 /// Float voxels that are affine in patient space: what a trilinear field holds exactly.
 double affine(const VolumeGeometry& geometry, glm::ivec3 voxel) {
@@ -105,18 +108,15 @@ TEST(Resample, StaysBetweenTheVoxelsAndRoundsToNearest) {
     EXPECT_EQ(result.valueAt({3, 0, 0}), 13.0);
 }
 
-TEST(Resample, WholeMultiplesAreAveragesOfAllVoxels) {
-    EXPECT_TRUE(rc::check([] {
-        const int factor = *rc::gen::inRange(2, 5);
-        const glm::ivec3 dims =
-            glm::ivec3(*rc::gen::inRange(1, 4), *rc::gen::inRange(1, 4), *rc::gen::inRange(1, 4));
-        const unsigned seed = *rc::gen::arbitrary<unsigned>();
-        const Volume volume = floats(oblique(dims * factor), [&](glm::ivec3 v) {
-            return (seed + unsigned(v.x * 7 + v.y * 31 + v.z * 127)) * 2654435761U % 1000U;
-        });
-        const Volume expected = downsample(volume, glm::ivec3(factor)).value();
-        RC_ASSERT(resample(volume, dims).value().voxels == expected.voxels);
-    }));
+PROPERTY(Resample, WholeMultiplesAreAveragesOfAllVoxels) {
+    const int factor = anyInt(2, 5);
+    const glm::ivec3 dims = glm::ivec3(anyInt(1, 4), anyInt(1, 4), anyInt(1, 4));
+    const unsigned seed = anyBits();
+    const Volume volume = floats(oblique(dims * factor), [&](glm::ivec3 v) {
+        return (seed + unsigned(v.x * 7 + v.y * 31 + v.z * 127)) * 2654435761U % 1000U;
+    });
+    const Volume expected = downsample(volume, glm::ivec3(factor)).value();
+    PROPERTY_ASSERT(resample(volume, dims).value().voxels == expected.voxels);
 }
 
 TEST(Resample, RefusesEmptyAndOversized) {

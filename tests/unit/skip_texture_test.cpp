@@ -4,13 +4,17 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 
 #include "core/skip/gpu/gpu_passes.h"
 #include "core/skip/skip_structure.h"
+#include "tests/support/property.h"
 
 namespace slabcast {
 namespace {
+
+using test::anyBool;
+using test::anyElement;
+using test::anyInt;
 
 std::int64_t texelsOf(glm::ivec3 size) {
     return std::int64_t(size.x) * size.y * size.z;
@@ -30,32 +34,32 @@ struct Shape {
 };
 
 Shape randomShape(int mostLeaves) {
-    const auto edge = rc::gen::inRange(1, mostLeaves);
-    Shape shape{{*edge, *edge, *edge}, 1, *rc::gen::element(8, 16, 32, 64, 128)};
-    if (*rc::gen::arbitrary<bool>()) { // flat
-        shape.leaves[*rc::gen::inRange(0, 3)] = *rc::gen::inRange(1, 4);
+    const auto edge = [&] { return anyInt(1, mostLeaves); };
+    Shape shape{{edge(), edge(), edge()}, 1, anyElement(8, 16, 32, 64, 128)};
+    if (anyBool()) { // flat
+        shape.leaves[anyInt(0, 3)] = anyInt(1, 4);
     }
-    shape.levels = keptLevels(shape.leaves, *rc::gen::inRange(0, 3));
+    shape.levels = keptLevels(shape.leaves, anyInt(0, 3));
     return shape;
 }
 
 // A texture of t texels in all is 2^f wide and high with f within a half of log2(t) / 3. So its
 // slices have 2 t^(2/3) texels at most, and less than one of them is lost; that is less than
 // t / 10 + 118.6 for every t, the most where t^(1/3) is 40/3.
-RC_GTEST_PROP(OctreeLayout, TakesATenthMoreThanItsLevelsAtMost, ()) {
+PROPERTY(OctreeLayout, TakesATenthMoreThanItsLevelsAtMost) {
     const Shape s = randomShape(400);
     const SkipLayout layout = octreeLayout(s.leaves, s.levels, s.bits);
     std::int64_t needed = 0;
     for (int level = 0; level < s.levels; ++level) {
-        RC_ASSERT(layout.levels[level].texels == texelsOfLevel(s.leaves, level, s.bits));
+        PROPERTY_ASSERT(layout.levels[level].texels == texelsOfLevel(s.leaves, level, s.bits));
         needed += texelsOf(layout.levels[level].texels);
     }
     const std::int64_t lost = texelsOf(layout.texels) - needed;
-    RC_ASSERT(lost >= 0);
-    RC_ASSERT(double(lost) < 0.1 * double(needed) + 119.0);
+    PROPERTY_ASSERT(lost >= 0);
+    PROPERTY_ASSERT(double(lost) < 0.1 * double(needed) + 119.0);
     const int bytesPerTexel = std::max(4, s.bits / 8);
-    RC_ASSERT(layout.bytes() == texelsOf(layout.texels) * bytesPerTexel);
-    RC_ASSERT(layout.texels.z <= 3 * layout.texels.x || layout.texels.x == 2);
+    PROPERTY_ASSERT(layout.bytes() == texelsOf(layout.texels) * bytesPerTexel);
+    PROPERTY_ASSERT(layout.texels.z <= 3 * layout.texels.x || layout.texels.x == 2);
 }
 
 /// As gles_shaders/build_levels.glsl.
@@ -66,7 +70,7 @@ glm::ivec3 placeOf(const SkipLevel& level, glm::ivec3 texel) {
     return {number & last, (number >> a.w) & last, number >> (2 * a.w)};
 }
 
-RC_GTEST_PROP(OctreeLayout, GivesEveryTexelAPlaceOfItsOwn, ()) {
+PROPERTY(OctreeLayout, GivesEveryTexelAPlaceOfItsOwn) {
     const Shape s = randomShape(18);
     const SkipLayout layout = octreeLayout(s.leaves, s.levels, s.bits);
     std::set<std::int64_t> taken;
@@ -75,8 +79,8 @@ RC_GTEST_PROP(OctreeLayout, GivesEveryTexelAPlaceOfItsOwn, ()) {
             const glm::ivec3 texel(i % level.texels.x, i / level.texels.x % level.texels.y,
                                    i / level.texels.x / level.texels.y);
             const glm::ivec3 place = placeOf(level, texel);
-            RC_ASSERT(glm::all(glm::lessThan(place, layout.texels)));
-            RC_ASSERT(
+            PROPERTY_ASSERT(glm::all(glm::lessThan(place, layout.texels)));
+            PROPERTY_ASSERT(
                 taken
                     .insert((std::int64_t(place.z) * layout.texels.y + place.y) * layout.texels.x +
                             place.x)

@@ -5,14 +5,19 @@
 #include <numeric>
 
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
 
 #include "core/volume/half.h"
 #include "core/volume/texels.h"
 #include "core/volume/voxel_dispatch.h"
+#include "tests/support/property.h"
 
 namespace slabcast {
 namespace {
+
+using test::anyElement;
+using test::anyInt;
+using test::anyInt16sNotEmpty;
+using test::checkProperty;
 
 constexpr TexelFormat kAllFormats[] = {TexelFormat::R8, TexelFormat::R16, TexelFormat::R16F,
                                        TexelFormat::Rg8Exact, TexelFormat::R32fExact};
@@ -261,25 +266,23 @@ TEST(EncodeTexels, ConstantAndSingleVoxels) {
     }
 }
 
-TEST(EncodeTexels, DecodesFromItsBytesByTheHeadersRule) {
-    EXPECT_TRUE(rc::check([] {
-        const auto voxels = *rc::gen::nonEmpty<std::vector<std::int16_t>>();
-        Volume volume = volumeOf(VoxelType::I16, voxels);
-        volume.rescaleSlope = *rc::gen::element(1.0, -1.0, 0.25, -3.0);
-        volume.rescaleIntercept = *rc::gen::element(0.0, -1024.0, 0.1);
-        for (const TexelFormat format : kAllFormats) {
-            const Texels texels = encoded(volume, format);
-            RC_ASSERT(texels.data.size() == voxels.size() * bytesPerTexel(format));
-            for (std::size_t i = 0; i < voxels.size(); ++i) {
-                const double expected =
-                    texels.valueScale * sampledByDefinition(texels, i) + texels.valueBias;
-                const glm::ivec3 at(static_cast<int>(i), 0, 0);
-                RC_ASSERT(std::abs(decodedValue(texels, at) - expected) < 1e-9);
-                RC_ASSERT(std::abs(volume.valueAt(at) - expected) <=
-                          texels.maxQuantisationError + 1e-9);
-            }
+PROPERTY(EncodeTexels, DecodesFromItsBytesByTheHeadersRule) {
+    const auto voxels = anyInt16sNotEmpty();
+    Volume volume = volumeOf(VoxelType::I16, voxels);
+    volume.rescaleSlope = anyElement(1.0, -1.0, 0.25, -3.0);
+    volume.rescaleIntercept = anyElement(0.0, -1024.0, 0.1);
+    for (const TexelFormat format : kAllFormats) {
+        const Texels texels = encoded(volume, format);
+        PROPERTY_ASSERT(texels.data.size() == voxels.size() * bytesPerTexel(format));
+        for (std::size_t i = 0; i < voxels.size(); ++i) {
+            const double expected =
+                texels.valueScale * sampledByDefinition(texels, i) + texels.valueBias;
+            const glm::ivec3 at(static_cast<int>(i), 0, 0);
+            PROPERTY_ASSERT(std::abs(decodedValue(texels, at) - expected) < 1e-9);
+            PROPERTY_ASSERT(std::abs(volume.valueAt(at) - expected) <=
+                            texels.maxQuantisationError + 1e-9);
         }
-    }));
+    }
 }
 
 void expectCodesBracketTheirTexels(const Volume& volume, TexelFormat format) {
@@ -374,16 +377,16 @@ TEST(EncodeCodes, BinsOfFloatsBracketAlsoExtremes) {
     for (const std::vector<float>& set : sets) {
         expectCodesBracketTheirTexels(volumeOf(VoxelType::F32, set), TexelFormat::R32fExact);
     }
-    EXPECT_TRUE(rc::check([] {
-        const int shift = *rc::gen::inRange(-30, 30);
+    checkProperty([] {
+        const int shift = anyInt(-30, 30);
         std::vector<float> values;
         for (int i = 0; i < 40; ++i) {
-            values.push_back(std::ldexp(static_cast<float>(*rc::gen::inRange(-1 << 23, 1 << 23)),
-                                        *rc::gen::inRange(-12, 1) + shift));
+            values.push_back(
+                std::ldexp(static_cast<float>(anyInt(-1 << 23, 1 << 23)), anyInt(-12, 1) + shift));
         }
         expectCodesBracketTheirTexels(volumeOf(VoxelType::F32, values), TexelFormat::R32fExact);
-        RC_ASSERT(!::testing::Test::HasFatalFailure());
-    }));
+        PROPERTY_ASSERT(!::testing::Test::HasFatalFailure());
+    });
 }
 
 TEST(EncodeCodes, BinsOfFloatsAreNarrow) {

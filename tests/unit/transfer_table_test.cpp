@@ -2,13 +2,16 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
 
 #include "core/transfer/transfer_function.h"
 #include "core/volume/half.h"
+#include "tests/support/property.h"
 
 namespace slabcast {
 namespace {
+
+using test::anyBool;
+using test::anyInt;
 
 constexpr auto kDisplay = CompositingSpace::Display;
 constexpr double kHalfUlp = 0x1p-11; // relative rounding of fp16
@@ -165,72 +168,65 @@ TEST(TransferTable, TheEndOfARampThatStepsToZeroOnATexelIsKept) {
 /// Points in steps of a tenth, so that some fall between integers, on integers, and together.
 TransferFunction anyTf() {
     TransferFunction tf;
-    int value = *rc::gen::inRange(-300, 300);
-    const int count = *rc::gen::inRange(1, 8);
+    int value = anyInt(-300, 300);
+    const int count = anyInt(1, 8);
     for (int i = 0; i < count; ++i) {
-        const double opacity = std::max(0, *rc::gen::inRange(-100, 100)) / 100.0;
-        tf.points.push_back({value / 10.0, glm::dvec3(*rc::gen::inRange(0, 100) / 100.0), opacity});
+        const double opacity = std::max(0, anyInt(-100, 100)) / 100.0;
+        tf.points.push_back({value / 10.0, glm::dvec3(anyInt(0, 100) / 100.0), opacity});
         const bool isStep =
             i > 0 && tf.points[static_cast<std::size_t>(i) - 1].value == tf.points.back().value;
-        value += *rc::gen::inRange(isStep ? 1 : 0, 40);
+        value += anyInt(isStep ? 1 : 0, 40);
     }
     return validated(tf).value();
 }
 
-TEST(TransferTable, FollowsTheTfAtEveryTexel) {
-    EXPECT_TRUE(rc::check([] {
-        const TransferFunction tf = anyTf();
-        const bool integers = *rc::gen::arbitrary<bool>();
-        const TransferTable table = makeTable(tf, -40.0, 40.0, integers, kDisplay, 257);
-        for (std::size_t k = 0; k < table.texels.size(); ++k) {
-            const float alpha = table.texels[k].w;
-            RC_ASSERT(!table.wide && roundedToHalf(alpha) == alpha);
-            const double extinction = static_cast<double>(alpha) * table.extinctionPerMm;
-            const TransferSample sample = evaluate(tf, valueOf(table, k));
-            const double exact = extinctionPerMm(sample.opacity, 1.0);
-            // Peaks between texels may raise a texel; nothing ever lowers one, to zero least of
-            // all.
-            RC_ASSERT(extinction >= exact * (1.0 - kHalfUlp));
-            RC_ASSERT(sample.opacity == 0.0 || alpha > 0.0F);
-        }
-    }));
+PROPERTY(TransferTable, FollowsTheTfAtEveryTexel) {
+    const TransferFunction tf = anyTf();
+    const bool integers = anyBool();
+    const TransferTable table = makeTable(tf, -40.0, 40.0, integers, kDisplay, 257);
+    for (std::size_t k = 0; k < table.texels.size(); ++k) {
+        const float alpha = table.texels[k].w;
+        PROPERTY_ASSERT(!table.wide && roundedToHalf(alpha) == alpha);
+        const double extinction = static_cast<double>(alpha) * table.extinctionPerMm;
+        const TransferSample sample = evaluate(tf, valueOf(table, k));
+        const double exact = extinctionPerMm(sample.opacity, 1.0);
+        // Peaks between texels may raise a texel; nothing ever lowers one, to zero least of
+        // all.
+        PROPERTY_ASSERT(extinction >= exact * (1.0 - kHalfUlp));
+        PROPERTY_ASSERT(sample.opacity == 0.0 || alpha > 0.0F);
+    }
 }
 
-TEST(TransferTable, ZeroTexelsMeanZeroTfAround) {
-    EXPECT_TRUE(rc::check([] {
-        const TransferFunction tf = anyTf();
-        const bool integers = *rc::gen::arbitrary<bool>();
-        const TransferTable table = makeTable(tf, -40.0, 40.0, integers, kDisplay, 257);
-        // Nothing visible in the data may lie where the table and both texels beside it are empty.
-        for (int i = -4000; i <= 4000; ++i) {
-            const double value = i / 100.0;
-            if (evaluate(tf, value).opacity > 0.0) {
-                const double texel = (table.lastValue - table.firstValue) /
-                                     static_cast<double>(table.texels.size() - 1);
-                RC_ASSERT(lookUp(table, value).w > 0.0 || lookUp(table, value - texel).w > 0.0 ||
-                          lookUp(table, value + texel).w > 0.0);
-            }
+PROPERTY(TransferTable, ZeroTexelsMeanZeroTfAround) {
+    const TransferFunction tf = anyTf();
+    const bool integers = anyBool();
+    const TransferTable table = makeTable(tf, -40.0, 40.0, integers, kDisplay, 257);
+    // Nothing visible in the data may lie where the table and both texels beside it are empty.
+    for (int i = -4000; i <= 4000; ++i) {
+        const double value = i / 100.0;
+        if (evaluate(tf, value).opacity > 0.0) {
+            const double texel =
+                (table.lastValue - table.firstValue) / static_cast<double>(table.texels.size() - 1);
+            PROPERTY_ASSERT(lookUp(table, value).w > 0.0 || lookUp(table, value - texel).w > 0.0 ||
+                            lookUp(table, value + texel).w > 0.0);
         }
-    }));
+    }
 }
 
-TEST(TransferTable, WithoutNarrowPeaksZeroIsZero) {
-    EXPECT_TRUE(rc::check([] {
-        TransferFunction tf; // knots on integers only: no peak lies between two texels
-        int value = *rc::gen::inRange(-30, 0);
-        for (int i = 0; i < 6; ++i) {
-            tf.points.push_back(
-                {double(value), glm::dvec3(1.0), std::max(0, *rc::gen::inRange(-9, 9)) / 10.0});
-            value += *rc::gen::inRange(1, 12);
-        }
-        const TransferTable table = makeTable(tf, -40.0, 40.0, true, kDisplay);
-        for (int v = -40; v <= 40; ++v) {
-            const double opacity = evaluate(tf, v).opacity;
-            const double alpha = lookUp(table, v).w;
-            RC_ASSERT((alpha == 0.0) == (opacity == 0.0));
-            RC_ASSERT(std::abs(alpha - extinctionPerMm(opacity, 1.0)) <= alpha * 0x1p-10);
-        }
-    }));
+PROPERTY(TransferTable, WithoutNarrowPeaksZeroIsZero) {
+    TransferFunction tf; // knots on integers only: no peak lies between two texels
+    int value = anyInt(-30, 0);
+    for (int i = 0; i < 6; ++i) {
+        tf.points.push_back({double(value), glm::dvec3(1.0), std::max(0, anyInt(-9, 9)) / 10.0});
+        value += anyInt(1, 12);
+    }
+    const TransferTable table = makeTable(tf, -40.0, 40.0, true, kDisplay);
+    for (int v = -40; v <= 40; ++v) {
+        const double opacity = evaluate(tf, v).opacity;
+        const double alpha = lookUp(table, v).w;
+        PROPERTY_ASSERT((alpha == 0.0) == (opacity == 0.0));
+        PROPERTY_ASSERT(std::abs(alpha - extinctionPerMm(opacity, 1.0)) <= alpha * 0x1p-10);
+    }
 }
 
 TEST(TransferTable, LookUpIsLinearBetweenTexels) {

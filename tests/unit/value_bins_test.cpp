@@ -7,13 +7,23 @@
 #include <span>
 
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 
 #include "core/volume/half.h"
+#include "tests/support/property.h"
 #include "tests/support/skip_scene.h"
 
 namespace slabcast {
 namespace {
+
+using test::anyBits;
+using test::anyBool;
+using test::anyElement;
+using test::anyInt;
+using test::anyIntsNotEmpty;
+using test::anyPairs;
+using test::intsInRange;
+using test::intsOf;
+using test::ofSize;
 
 bool has(const BinSet& set, int bin) {
     return (set[bin / 32] >> (bin % 32) & 1U) != 0;
@@ -22,12 +32,11 @@ bool has(const BinSet& set, int bin) {
 /// A few codes whose sampled values rise unevenly, some of them binned floats that overlap. The
 /// wide steps have room for values that no code stands for.
 TexelCodes randomCodes() {
-    const auto steps = *rc::gen::nonEmpty(
-        rc::gen::container<std::vector<int>>(rc::gen::element(0, 1, 1, 1, 2, 5, 40, 40)));
-    const float width = float(*rc::gen::element(0, 0, 1, 3));
+    const auto steps = anyIntsNotEmpty(intsOf({0, 1, 1, 1, 2, 5, 40, 40}));
+    const float width = float(anyElement(0, 0, 1, 3));
     TexelCodes codes;
     codes.dims = glm::ivec3(int(steps.size()), 1, 1);
-    float value = float(*rc::gen::inRange(-50, 50));
+    float value = float(anyInt(-50, 50));
     for (std::size_t code = 0; code < steps.size(); ++code) {
         value += float(steps[code]);
         codes.codes.push_back(std::uint16_t(code));
@@ -40,13 +49,11 @@ TexelCodes randomCodes() {
 /// Up to four visible runs of texels, from half a value to four apart, over all of the values, a
 /// part of them, or more.
 TransferTable randomTable(const TexelCodes& codes) {
-    const double low = codes.lowSampled.front() + *rc::gen::inRange(-20, 20);
+    const double low = codes.lowSampled.front() + anyInt(-20, 20);
     const double span = 1.0 + std::abs(codes.lowSampled.back() - low);
-    const int size = 2 + int(span * *rc::gen::element(0.25, 1.0, 2.0));
+    const int size = 2 + int(span * anyElement(0.25, 1.0, 2.0));
     TransferTable table{low, low + span, std::vector<glm::vec4>(size, glm::vec4(0.0F))};
-    const auto runs = *rc::gen::resize(
-        4, rc::gen::container<std::vector<std::pair<int, int>>>(rc::gen::pair(
-               rc::gen::resize(100, rc::gen::inRange(0, size)), rc::gen::element(0, 0, 1, 5, 50))));
+    const auto runs = anyPairs(4, ofSize(100, intsInRange(0, size)), intsOf({0, 0, 1, 5, 50}));
     for (const auto& [first, length] : runs) {
         for (int k = first; k <= std::min(size - 1, first + length); ++k) {
             table.texels[k].a = 0.5F;
@@ -56,20 +63,20 @@ TransferTable randomTable(const TexelCodes& codes) {
 }
 
 CodeRange randomRange(const TexelCodes& codes) {
-    const auto code = rc::gen::inRange<std::uint16_t>(0, std::uint16_t(codes.lowSampled.size()));
-    const std::uint16_t a = *code;
-    const std::uint16_t b = *code;
+    const int end = int(codes.lowSampled.size());
+    const auto a = std::uint16_t(anyInt(0, end));
+    const auto b = std::uint16_t(anyInt(0, end));
     return {std::min(a, b), std::max(a, b)};
 }
 
 ValueBins randomBins(const TexelCodes& codes) {
     std::optional<std::array<double, 2>> trimmed;
-    if (*rc::gen::arbitrary<bool>()) {
-        const double low = codes.lowSampled.front() + *rc::gen::inRange(-10, 100);
-        trimmed = {low, low + *rc::gen::inRange(1, 100)};
+    if (anyBool()) {
+        const double low = codes.lowSampled.front() + anyInt(-10, 100);
+        trimmed = {low, low + anyInt(1, 100)};
     }
-    return valueBins(codes, randomRange(codes), *rc::gen::element(2, 3, 8, 16, 32, 128, 256),
-                     *rc::gen::arbitrary<bool>(), trimmed);
+    return valueBins(codes, randomRange(codes), anyElement(2, 3, 8, 16, 32, 128, 256), anyBool(),
+                     trimmed);
 }
 
 /// How many bins of the set the cells of each pair of codes have, all pairs: cells that are visible
@@ -88,25 +95,25 @@ void checkSet(const ValueBins& bins, const CellVisibility& visibility, const Bin
                     common.push_back(bin);
                 }
             }
-            RC_ASSERT(!common.empty());
+            PROPERTY_ASSERT(!common.empty());
             if (common.size() == 1) {
                 needed[common[0] / 32] |= 1U << (common[0] % 32);
             }
         }
     }
-    RC_ASSERT(needed == set);
+    PROPERTY_ASSERT(needed == set);
 }
 
-RC_GTEST_PROP(VisibleBins, AreThoseThatVisibleCellsNeed, ()) {
+PROPERTY(VisibleBins, AreThoseThatVisibleCellsNeed) {
     const TexelCodes codes = randomCodes();
     const ValueBins bins = randomBins(codes);
-    const double filterError = *rc::gen::element(0.0, 0.0, 0.3, 2.0);
+    const double filterError = anyElement(0.0, 0.0, 0.3, 2.0);
     const CellVisibility visibility =
         cellVisibility(codes, Texels{}, randomTable(codes), filterError);
     checkSet(bins, visibility, visibleBins(bins, visibility));
 }
 
-RC_GTEST_PROP(VisibleBins, OfAlpha, ()) {
+PROPERTY(VisibleBins, OfAlpha) {
     TexelCodes codes;
     codes.lowSampled.resize(256);
     std::iota(codes.lowSampled.begin(), codes.lowSampled.end(), 0.0F);
@@ -134,28 +141,28 @@ TEST(VisibleBins, NothingVisibleNeedsNone) {
 }
 
 /// All codes have a bin, bins rise with codes, and where the value says so exactly.
-RC_GTEST_PROP(ValueBins, AreEvenInValue, ()) {
+PROPERTY(ValueBins, AreEvenInValue) {
     const TexelCodes codes = randomCodes();
     const CodeRange range = randomRange(codes);
-    const int count = *rc::gen::element(2, 3, 8, 16, 32, 128, 256);
-    const bool separate = *rc::gen::arbitrary<bool>();
-    const bool trim = *rc::gen::arbitrary<bool>();
+    const int count = anyElement(2, 3, 8, 16, 32, 128, 256);
+    const bool separate = anyBool();
+    const bool trim = anyBool();
     const std::size_t first = std::min<std::size_t>(range.least + (separate ? 1 : 0), range.most);
     std::array<double, 2> span{codes.lowSampled[first], codes.lowSampled[range.most]};
     if (trim) {
-        span[0] += *rc::gen::inRange(-10, 10);
-        span[1] = span[0] + *rc::gen::inRange(1, 100);
+        span[0] += anyInt(-10, 10);
+        span[1] = span[0] + anyInt(1, 100);
     }
     const ValueBins bins =
         valueBins(codes, range, count, separate, trim ? std::optional(span) : std::nullopt);
-    RC_ASSERT(bins.count == count);
-    RC_ASSERT(bins.binOfCode.size() == codes.lowSampled.size());
-    RC_ASSERT(std::is_sorted(bins.binOfCode.begin(), bins.binOfCode.end()));
+    PROPERTY_ASSERT(bins.count == count);
+    PROPERTY_ASSERT(bins.binOfCode.size() == codes.lowSampled.size());
+    PROPERTY_ASSERT(std::is_sorted(bins.binOfCode.begin(), bins.binOfCode.end()));
     const int even = count - (separate ? 1 : 0);
     for (int code = 0; code < int(codes.lowSampled.size()); ++code) {
         const int bin = bins.binOfCode[code];
         if (separate && code <= range.least) {
-            RC_ASSERT(bin == 0);
+            PROPERTY_ASSERT(bin == 0);
             continue;
         }
         // Values and spans are whole numbers: bin k spans [k, k+1] * (span / even) from the low
@@ -163,10 +170,10 @@ RC_GTEST_PROP(ValueBins, AreEvenInValue, ()) {
         const long value = std::lround((codes.lowSampled[code] - span[0])) * even;
         const long width = std::lround(span[1] - span[0]);
         const long k = bin - (count - even);
-        RC_ASSERT(k >= 0);
-        RC_ASSERT(k < even);
-        RC_ASSERT((k == 0 || width == 0 || value >= k * width));
-        RC_ASSERT((k == even - 1 || width == 0 || value <= (k + 1) * width));
+        PROPERTY_ASSERT(k >= 0);
+        PROPERTY_ASSERT(k < even);
+        PROPERTY_ASSERT((k == 0 || width == 0 || value >= k * width));
+        PROPERTY_ASSERT((k == even - 1 || width == 0 || value <= (k + 1) * width));
     }
 }
 
@@ -249,21 +256,21 @@ TEST(ValueBins, OfFloatsAreEvenInValue) {
 }
 
 /// Real codes, too many for all pairs.
-RC_GTEST_PROP(VisibleBins, OfHalfsAndFloats, (unsigned seed)) {
+PROPERTY(VisibleBins, OfHalfsAndFloats) {
+    const unsigned seed = anyBits();
     std::mt19937 random(seed);
     std::normal_distribution<float> normal(0.0F, 300.0F);
     std::vector<float> floats(100);
     std::generate(floats.begin(), floats.end(), [&] { return normal(random); });
     std::vector<std::uint16_t> halfs;
     std::transform(floats.begin(), floats.end(), std::back_inserter(halfs), halfFromFloat);
-    const TexelCodes codes = *rc::gen::arbitrary<bool>()
-                                 ? codesOf(TexelFormat::R16F, bytesOf(halfs))
-                                 : codesOf(TexelFormat::R32fExact, bytesOf(floats));
+    const TexelCodes codes = anyBool() ? codesOf(TexelFormat::R16F, bytesOf(halfs))
+                                       : codesOf(TexelFormat::R32fExact, bytesOf(floats));
     const auto center = double(floats[0]);
     TransferTable table{center - 20.0, center + 20.0, std::vector<glm::vec4>(256)};
     table.texels[random() % 256].a = 1.0F;
     const CellVisibility visibility = cellVisibility(codes, Texels{}, table, 0.0);
-    const ValueBins bins = valueBins(codes, codeRange(codes), 64, *rc::gen::arbitrary<bool>());
+    const ValueBins bins = valueBins(codes, codeRange(codes), 64, anyBool());
     const BinSet set = visibleBins(bins, visibility);
     for (int i = 0; i < 2000; ++i) {
         const std::uint16_t a = codes.codes[random() % 100];
@@ -273,7 +280,7 @@ RC_GTEST_PROP(VisibleBins, OfHalfsAndFloats, (unsigned seed)) {
         for (int bin = bins.binOfCode[low]; bin <= bins.binOfCode[high]; ++bin) {
             common = common || has(set, bin);
         }
-        RC_ASSERT((common || !visibility.visible(low, high)));
+        PROPERTY_ASSERT((common || !visibility.visible(low, high)));
     }
 }
 

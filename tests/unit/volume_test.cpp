@@ -4,15 +4,17 @@
 #include <numeric>
 
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
 
 #include "core/volume/downsample.h"
 #include "core/volume/statistics.h"
 #include "core/volume/volume.h"
 #include "core/volume/voxel_dispatch.h"
+#include "tests/support/property.h"
 
 namespace slabcast {
 namespace {
+
+using test::anyInt;
 
 template <class T>
 VoxelType typeOf() {
@@ -331,29 +333,26 @@ TEST(Downsample, WeighsVoxelsThatAreCut) {
     EXPECT_FLOAT_EQ(static_cast<float>(result.valueAt({2, 0, 0})), (12.0F * 2 / 3 + 18.0F) * 3 / 5);
 }
 
-TEST(Downsample, KeepsBoxAndMean) {
-    EXPECT_TRUE(rc::check([] {
-        Volume volume;
-        volume.type = VoxelType::F64;
-        volume.geometry = obliqueGeometry();
-        volume.geometry.dims = {*rc::gen::inRange(1, 12), *rc::gen::inRange(1, 12),
-                                *rc::gen::inRange(1, 12)};
-        const glm::ivec3 factor(*rc::gen::inRange(1, 15), *rc::gen::inRange(1, 5),
-                                *rc::gen::inRange(1, 5));
-        volume.voxels.resize(static_cast<std::size_t>(volume.geometry.voxelCount()) * 8);
-        visitVoxels(volume, []<class T>(std::span<T> voxels) {
-            for (T& voxel : voxels) {
-                voxel = static_cast<T>(*rc::gen::inRange(-1000, 1000));
-            }
-        });
-        const Volume result = downsample(volume, factor).value();
-        const glm::dmat4 before = volume.geometry.modelFromUvw();
-        const glm::dmat4 after = result.geometry.modelFromUvw();
-        for (int column = 0; column < 4; ++column) {
-            RC_ASSERT(glm::distance(before[column], after[column]) < 1e-9);
+PROPERTY(Downsample, KeepsBoxAndMean) {
+    Volume volume;
+    volume.type = VoxelType::F64;
+    volume.geometry = obliqueGeometry();
+    volume.geometry.dims = {anyInt(1, 12), anyInt(1, 12), anyInt(1, 12)};
+    const glm::ivec3 factor(anyInt(1, 15), anyInt(1, 5), anyInt(1, 5));
+    volume.voxels.resize(static_cast<std::size_t>(volume.geometry.voxelCount()) * 8);
+    visitVoxels(volume, []<class T>(std::span<T> voxels) {
+        for (T& voxel : voxels) {
+            voxel = static_cast<T>(anyInt(-1000, 1000));
         }
-        RC_ASSERT(std::abs(computeStatistics(volume).mean - computeStatistics(result).mean) < 1e-9);
-    }));
+    });
+    const Volume result = downsample(volume, factor).value();
+    const glm::dmat4 before = volume.geometry.modelFromUvw();
+    const glm::dmat4 after = result.geometry.modelFromUvw();
+    for (int column = 0; column < 4; ++column) {
+        PROPERTY_ASSERT(glm::distance(before[column], after[column]) < 1e-9);
+    }
+    PROPERTY_ASSERT(std::abs(computeStatistics(volume).mean - computeStatistics(result).mean) <
+                    1e-9);
 }
 
 TEST(Downsample, KeepsExtremesOfConstantVolumes) {
