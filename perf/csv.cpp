@@ -1,12 +1,8 @@
 #include "perf/csv.h"
 
-#include <nlohmann/json.hpp>
-
 namespace slabcast {
 
 namespace {
-
-using nlohmann::json;
 
 std::string quoted(std::string text) {
     if (text.find_first_of(",\"\n") == std::string::npos) {
@@ -18,12 +14,11 @@ std::string quoted(std::string text) {
     return '"' + text + '"';
 }
 
-std::string cellOf(const json& row, const char* pointer) {
-    const json::json_pointer place(pointer);
-    const json value = row.contains(place) ? row.at(place) : json();
-    return value.is_null()     ? ""
-           : value.is_string() ? quoted(value.get<std::string>())
-                               : value.dump();
+std::string cellOf(const Json& row, const char* pointer) {
+    const Json* value = row.atPointer(pointer);
+    return value == nullptr || value->isNull() ? ""
+           : value->isText()                   ? quoted(value->text())
+                                               : value->dump();
 }
 
 } // namespace
@@ -36,14 +31,14 @@ std::vector<CsvColumn> columnsOf(std::initializer_list<std::span<const CsvColumn
     return columns;
 }
 
-std::string csvOf(const json& rows, std::span<const CsvColumn> columns) {
+std::string csvOf(const Json& rows, std::span<const CsvColumn> columns) {
     std::string text;
     const auto endLine = [&text] { text.back() = '\n'; };
     for (const CsvColumn& column : columns) {
         text += std::string(column.heading) + ",";
     }
     endLine();
-    for (const json& row : rows) {
+    for (const Json& row : rows) {
         for (const CsvColumn& column : columns) {
             text += cellOf(row, column.pointer) + ",";
         }

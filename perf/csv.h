@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
+#include "perf/json.h"
 
 namespace slabcast {
 
@@ -35,6 +35,6 @@ std::vector<CsvColumn> columnsOf(std::initializer_list<std::span<const CsvColumn
 
 /// A line per row, after the headings; empty where a value is null or missing. Text is quoted where
 /// it holds what separates cells or lines. Tested by: error_grid_test.cpp
-std::string csvOf(const nlohmann::json& rows, std::span<const CsvColumn> columns);
+std::string csvOf(const Json& rows, std::span<const CsvColumn> columns);
 
 } // namespace slabcast

@@ -3,13 +3,9 @@
 #include <algorithm>
 #include <ctime>
 
-#include <nlohmann/json.hpp>
-
 #include "perf/stage.h"
 
 namespace slabcast {
-
-using nlohmann::json;
 
 std::string keyOf(std::string_view words) {
     std::string key(words);
@@ -18,28 +14,28 @@ std::string keyOf(std::string_view words) {
     return key;
 }
 
-json toJson(const gl::Caps& caps) {
+Json toJson(const gl::Caps& caps) {
     return {{"vendor", caps.vendor},
             {"renderer", caps.renderer},
             {"version", caps.driver},
             {"software", caps.isSoftware}};
 }
 
-json toJson(const VolumeInfo& info) {
+Json toJson(const VolumeInfo& info) {
     return {{"name", info.name},
-            {"dims", {info.dims.x, info.dims.y, info.dims.z}},
+            {"dims", Json::list({info.dims.x, info.dims.y, info.dims.z})},
             {"type", name(info.type)},
             {"unit", info.unit},
-            {"spacing_mm", {info.spacingMm.x, info.spacingMm.y, info.spacingMm.z}},
+            {"spacing_mm", Json::list({info.spacingMm.x, info.spacingMm.y, info.spacingMm.z})},
             {"bytes", info.bytes}};
 }
 
-json toJson(const OrbitCamera& camera) {
-    return {camera.azimuthDegrees, camera.elevationDegrees, camera.distanceRadii};
+Json toJson(const OrbitCamera& camera) {
+    return Json::list({camera.azimuthDegrees, camera.elevationDegrees, camera.distanceRadii});
 }
 
-json toJson(const FramePlan& plan) {
-    json reasons = json::array();
+Json toJson(const FramePlan& plan) {
+    Json reasons = Json::list();
     for (const ReasonText& reason : explained(plan)) {
         reasons.push_back({{"what", reason.what}, {"why", reason.why}});
     }
@@ -52,7 +48,7 @@ json toJson(const FramePlan& plan) {
             {"jitter", plan.lattice.jittered},
             {"variant", name(plan.variant)},
             {"tighten", plan.tighten},
-            {"termination", terminates ? json(plan.terminationAlpha) : json("off")},
+            {"termination", terminates ? Json(plan.terminationAlpha) : Json("off")},
             {"order", name(plan.order)},
             {"planes_per_mark", plan.planesPerMark},
             {"target", name(plan.target)},
@@ -61,12 +57,12 @@ json toJson(const FramePlan& plan) {
             {"reasons", std::move(reasons)}};
 }
 
-json toJson(const BuiltSkip& skip) {
+Json toJson(const BuiltSkip& skip) {
     if (!skip.exists()) {
         return nullptr;
     }
     const SkipOptions& o = skip.options;
-    json parameters = {{"block_edge", o.blockEdgeVoxels}};
+    Json parameters = {{"block_edge", o.blockEdgeVoxels}};
     const bool isBitfield = o.structure == SkipStructure::BitfieldOctree;
     const bool isPartitioned = o.structure == SkipStructure::Partitioned;
     if (isBitfield) {
@@ -77,7 +73,7 @@ json toJson(const BuiltSkip& skip) {
     }
     if (isBitfield || isPartitioned) {
         parameters["separate_minimum"] = o.separateMinimum;
-        parameters["value_range"] = o.valueRange ? json(*o.valueRange) : json();
+        parameters["value_range"] = o.valueRange ? Json::listOf(*o.valueRange) : Json();
     }
     if (isOctree(o.structure)) {
         parameters["initial_level"] = o.initialLevel;
@@ -92,7 +88,7 @@ json toJson(const BuiltSkip& skip) {
             {"occupied_fraction", skip.occupiedFraction}};
 }
 
-json toJson(const FrameTimes& t) {
+Json toJson(const FrameTimes& t) {
     if (t.count == 0) {
         return nullptr;
     }
@@ -100,7 +96,7 @@ json toJson(const FrameTimes& t) {
             {"p10", t.p10},       {"p90", t.p90}, {"n", t.count}};
 }
 
-json toJson(const Result<WorkCounters>& counters) {
+Json toJson(const Result<WorkCounters>& counters) {
     if (!counters) {
         return nullptr;
     }
@@ -113,15 +109,15 @@ json toJson(const Result<WorkCounters>& counters) {
             {"blocks_visited", counters->blocksVisited}};
 }
 
-json reportHeader(const RunInfo& run, const gl::Caps& caps) {
+Json reportHeader(const RunInfo& run, const gl::Caps& caps) {
     return {{"command", run.command},
             {"commit", run.commit},
             {"date", timestamp()},
             {"device", toJson(caps)}};
 }
 
-json reportHeader(const RunInfo& run, const Stage& stage) {
-    json header = reportHeader(run, stage.caps());
+Json reportHeader(const RunInfo& run, const Stage& stage) {
+    Json header = reportHeader(run, stage.caps());
     header["volume"] = toJson(stage.info());
     return header;
 }

@@ -4,11 +4,10 @@
 #include <string>
 #include <string_view>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "core/base/error.h"
 #include "core/draw/renderer.h"
 #include "perf/frame_times.h"
+#include "perf/json.h"
 #include "perf/volume_info.h"
 
 namespace slabcast {
@@ -20,13 +19,13 @@ class Stage;
 std::string keyOf(std::string_view words);
 
 // JSON fragments that reports share. Keys are stable: people plot them.
-nlohmann::json toJson(const gl::Caps& caps);
-nlohmann::json toJson(const VolumeInfo& info);
-nlohmann::json toJson(const OrbitCamera& camera); // azimuth and elevation in degrees, radii
-nlohmann::json toJson(const FramePlan& plan);
-nlohmann::json toJson(const BuiltSkip& skip);                // null where nothing was built
-nlohmann::json toJson(const FrameTimes& times);              // null of none
-nlohmann::json toJson(const Result<WorkCounters>& counters); // null where they cannot be had
+Json toJson(const gl::Caps& caps);
+Json toJson(const VolumeInfo& info);
+Json toJson(const OrbitCamera& camera); // azimuth and elevation in degrees, radii
+Json toJson(const FramePlan& plan);
+Json toJson(const BuiltSkip& skip);                // null where nothing was built
+Json toJson(const FrameTimes& times);              // null of none
+Json toJson(const Result<WorkCounters>& counters); // null where they cannot be had
 
 /// What a report says of the run itself, and only the program knows.
 struct RunInfo {
@@ -36,9 +35,9 @@ struct RunInfo {
 };
 
 /// What was run, of which build, when and on what: what every report begins with.
-nlohmann::json reportHeader(const RunInfo& run, const gl::Caps& caps);
+Json reportHeader(const RunInfo& run, const gl::Caps& caps);
 /// And with which volume.
-nlohmann::json reportHeader(const RunInfo& run, const Stage& stage);
+Json reportHeader(const RunInfo& run, const Stage& stage);
 
 /// Now, as 2026-11-24T10:00:00Z.
 std::string timestamp();

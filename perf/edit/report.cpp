@@ -1,19 +1,17 @@
 #include "perf/edit/report.h"
 
 #include <algorithm>
-
-#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "perf/csv.h"
 #include "perf/edit/summary.h"
+#include "perf/json.h"
 #include "perf/report_json.h"
 #include "perf/stage.h"
 
 namespace slabcast {
 
 namespace {
-
-using nlohmann::json;
 
 constexpr CsvColumn kColumns[] = {{"frame", "/frame"},
                                   {"step", "/step"},
@@ -38,11 +36,10 @@ constexpr CsvColumn kColumns[] = {{"frame", "/frame"},
                                   {"stretches", "/counters/stretches"},
                                   {"blocks_visited", "/counters/blocks_visited"}};
 
-json conditionsOf(const Stage& stage, const EditDesc& desc, const FramePlan& plan) {
+Json conditionsOf(const Stage& stage, const EditDesc& desc, const FramePlan& plan) {
     const StageDesc& picture = stage.desc();
-    const OrbitCamera& c = picture.camera;
-    return {{"size", {picture.size.x, picture.size.y}},
-            {"camera", {c.azimuthDegrees, c.elevationDegrees, c.distanceRadii}},
+    return {{"size", Json::list({picture.size.x, picture.size.y})},
+            {"camera", toJson(picture.camera)},
             {"turn_degrees", desc.turnDegrees},
             {"start", desc.script.start.name},
             {"edits", desc.origin},
@@ -56,24 +53,24 @@ json conditionsOf(const Stage& stage, const EditDesc& desc, const FramePlan& pla
             {"verified", desc.verify}};
 }
 
-json buildOf(const EditBuild& build) {
+Json buildOf(const EditBuild& build) {
     return {{"structure", name(build.structure)},
             {"block_edge", build.blockEdge},
             {"gpu_bytes", build.gpuBytes}};
 }
 
-json buildsOf(const EditBuilds& builds) {
-    json result = {{"always", buildOf(builds.always)}, {"naive_ms", builds.naiveMs}};
+Json buildsOf(const EditBuilds& builds) {
+    Json result = {{"always", buildOf(builds.always)}, {"naive_ms", builds.naiveMs}};
     result["always"]["ms"] = builds.always.ms;
     if (builds.settled) {
         result["settled"] = buildOf(*builds.settled);
-        result["settled"]["last_ms"] = builds.settled->ms > 0.0 ? json(builds.settled->ms) : json();
+        result["settled"]["last_ms"] = builds.settled->ms > 0.0 ? Json(builds.settled->ms) : Json();
     }
     return result;
 }
 
-json rowOf(const EditRow& row, std::size_t index) {
-    json result = {{"frame", index},
+Json rowOf(const EditRow& row, std::size_t index) {
+    Json result = {{"frame", index},
                    {"step", row.step},
                    {"edit", row.edited},
                    {"progress", name(row.progress)},
@@ -95,8 +92,12 @@ json rowOf(const EditRow& row, std::size_t index) {
     return result;
 }
 
-json summaryJson(const EditSummary& s, const EditDesc& desc, double worstOfReplays) {
-    json summary = {{"compared_with", name(desc.live.always.structure)},
+Json summaryJson(const EditSummary& s, const EditDesc& desc, double worstOfReplays) {
+    Json framesByStructure = Json::object();
+    for (const auto& [structure, frames] : s.framesByStructure) {
+        framesByStructure[structure] = frames;
+    }
+    Json summary = {{"compared_with", name(desc.live.always.structure)},
                     {"worst_over_octree_frame", s.overOctree.max},
                     {"over_octree_frame", toJson(s.overOctree)},
                     {"worst_added_over_octree_frame", s.worstAdded},
@@ -117,11 +118,11 @@ json summaryJson(const EditSummary& s, const EditDesc& desc, double worstOfRepla
                       {"edit_frame_ms", toJson(s.naiveEditFrameMs)},
                       {"worst_over_octree_frame", s.worstNaive},
                       {"frames_over_budget", s.naiveFramesOverBudget}}},
-                    {"frames_by_structure", s.framesByStructure},
+                    {"frames_by_structure", std::move(framesByStructure)},
                     {"hand_overs", s.handOvers}};
     if (desc.verify) {
         summary["frames_equal"] = s.framesEqual;
-        summary["frames_to_correct"] = s.framesToCorrect ? json(*s.framesToCorrect) : json();
+        summary["frames_to_correct"] = s.framesToCorrect ? Json(*s.framesToCorrect) : Json();
     }
     return summary;
 }
@@ -131,7 +132,7 @@ json summaryJson(const EditSummary& s, const EditDesc& desc, double worstOfRepla
 EditReport editReportOf(const Stage& stage, const EditDesc& desc, const EditMeasured& measured,
                         const RunInfo& run) {
     const std::vector<EditRow> rows = mediansOf(measured.replays);
-    json report = reportHeader(run, stage);
+    Json report = reportHeader(run, stage);
     report["conditions"] = conditionsOf(stage, desc, measured.decided);
     report["builds"] = buildsOf(measured.builds);
     report["summary"] =

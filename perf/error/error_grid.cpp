@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <nlohmann/json.hpp>
-
 #include "perf/number.h"
 
 namespace slabcast {
 
 namespace {
-
-using nlohmann::json;
 
 constexpr const char* kParts[] = {"total", "sampling", "table", "gpu"};
 constexpr double kFloor = 1e-9;
@@ -27,21 +23,21 @@ void fill(std::vector<T>& axis, std::vector<T> defaults) {
 }
 
 /// Rows of one family differ in spacing alone.
-json familyOf(const json& row) {
-    json family;
+Json familyOf(const Json& row) {
+    Json family;
     for (const char* key : {"layers", "classification", "target", "termination", "jitter"}) {
         family[key] = row.at(key);
     }
     return family;
 }
 
-std::optional<double> rmseOf(const json& row, const char* part) {
-    const json& error = row.at("error").at(part);
-    return error.is_null() ? std::nullopt : std::optional(error.at("rmse").get<double>());
+std::optional<double> rmseOf(const Json& row, const char* part) {
+    const Json& error = row.at("error").at(part);
+    return error.isNull() ? std::nullopt : std::optional(error.at("rmse").number());
 }
 
 /// Where sampling is most of the total, the total is not yet at what table and GPU leave.
-bool atFloor(const json& row, const char* part) {
+bool atFloor(const Json& row, const char* part) {
     const std::optional<double> rmse = rmseOf(row, part);
     if (!rmse || *rmse < kFloor) {
         return true;
@@ -50,21 +46,21 @@ bool atFloor(const json& row, const char* part) {
     return std::string_view(part) == "total" && (!sampling || *sampling < 0.5 * *rmse);
 }
 
-json orderOf(const json& coarse, const json& fine, const char* part) {
+Json orderOf(const Json& coarse, const Json& fine, const char* part) {
     if (atFloor(coarse, part) || atFloor(fine, part)) {
         return nullptr;
     }
     return std::log(*rmseOf(coarse, part) / *rmseOf(fine, part)) /
-           std::log(coarse.at("spacing").get<double>() / fine.at("spacing").get<double>());
+           std::log(coarse.at("spacing").number() / fine.at("spacing").number());
 }
 
 /// The row of the same family with the next larger spacing.
-const json* nextCoarser(const json& rows, const json& row) {
-    const json* found = nullptr;
-    for (const json& other : rows) {
-        const bool coarser = other.at("spacing") > row.at("spacing");
+const Json* nextCoarser(const Json& rows, const Json& row) {
+    const Json* found = nullptr;
+    for (const Json& other : rows) {
+        const bool coarser = other.at("spacing").number() > row.at("spacing").number();
         if (coarser && familyOf(other) == familyOf(row) &&
-            (found == nullptr || other.at("spacing") < found->at("spacing"))) {
+            (found == nullptr || other.at("spacing").number() < found->at("spacing").number())) {
             found = &other;
         }
     }
@@ -125,65 +121,65 @@ std::string idOf(const Sampling& s) {
            termination + (s.jitter ? "_jitter" : "");
 }
 
-json toJson(const std::optional<double>& termination) {
-    return termination ? json(*termination) : json("off");
+Json toJson(const std::optional<double>& termination) {
+    return termination ? Json(*termination) : Json("off");
 }
 
-json toJson(const GridAxes& axes) {
+Json toJson(const GridAxes& axes) {
     const auto list = [](const auto& values, auto&& convert) {
-        json all = json::array();
+        Json all = Json::list();
         for (const auto& value : values) {
             all.push_back(convert(value));
         }
         return all;
     };
     const auto named = [](auto value) { return name(value); };
-    return {{"spacings", axes.spacings},
-            {"layers", axes.layersPerPlane},
+    return {{"spacings", Json::listOf(axes.spacings)},
+            {"layers", Json::listOf(axes.layersPerPlane)},
             {"classifications", list(axes.classifications, named)},
             {"targets", list(axes.targets, named)},
             {"terminations",
              list(axes.terminations, [](const std::optional<double>& t) { return toJson(t); })},
-            {"jitter", axes.jitter}};
+            {"jitter", Json::listOf(axes.jitter)}};
 }
 
-json toJson(const Sampling& s) {
+Json toJson(const Sampling& s) {
     return {{"spacing", s.layerSpacingVoxels},          {"layers", s.layersPerPlane},
             {"classification", name(s.classification)}, {"target", name(s.target)},
             {"termination", toJson(s.termination)},     {"jitter", s.jitter}};
 }
 
-void addOrders(json& rows) {
-    for (json& row : rows) {
-        const json* coarser = nextCoarser(rows, row);
-        json order;
+void addOrders(Json& rows) {
+    for (Json& row : rows) {
+        const Json* coarser = nextCoarser(rows, row);
+        Json order;
         for (const char* part : kParts) {
-            order[part] = coarser == nullptr ? json() : orderOf(*coarser, row, part);
+            order[part] = coarser == nullptr ? Json() : orderOf(*coarser, row, part);
         }
         row["order"] = std::move(order);
-        row["coarser"] = coarser == nullptr ? json() : coarser->at("id");
+        row["coarser"] = coarser == nullptr ? Json() : coarser->at("id");
     }
 }
 
-std::vector<std::size_t> frontOf(const json& rows, std::optional<double> (*cost)(const json&)) {
+std::vector<std::size_t> frontOf(const Json& rows, std::optional<double> (*cost)(const Json&)) {
     std::vector<std::pair<std::pair<double, double>, std::size_t>> ranked;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (const std::optional<double> c = cost(rows[i])) {
-            ranked.push_back({{*c, totalRmse(rows[i])}, i});
+        if (const std::optional<double> c = cost(rows.at(i))) {
+            ranked.push_back({{*c, totalRmse(rows.at(i))}, i});
         }
     }
     std::sort(ranked.begin(), ranked.end());
     std::vector<std::size_t> front;
     for (const auto& [rank, index] : ranked) {
-        if (front.empty() || rank.second < totalRmse(rows[front.back()])) {
+        if (front.empty() || rank.second < totalRmse(rows.at(front.back()))) {
             front.push_back(index);
         }
     }
     return front;
 }
 
-double totalRmse(const json& row) {
-    return row.at("error").at("total").at("rmse").get<double>();
+double totalRmse(const Json& row) {
+    return row.at("error").at("total").at("rmse").number();
 }
 
 } // namespace slabcast

@@ -4,9 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "perf/error/error_table.h"
+#include "perf/json.h"
 
 namespace slabcast {
 
@@ -32,22 +31,21 @@ std::vector<Sampling> gridOf(const GridAxes& axes, bool quick);
 /// Names a row: unique in a grid, fit for a file's name. Tested by: error_grid_test.cpp
 std::string idOf(const Sampling& sampling);
 
-nlohmann::json toJson(const GridAxes& axes);
-nlohmann::json toJson(const std::optional<double>& termination); // a number or "off"
+Json toJson(const GridAxes& axes);
+Json toJson(const std::optional<double>& termination); // a number or "off"
 /// `rows` hold what the settings were: see toJson(Sampling).
-nlohmann::json toJson(const Sampling& sampling);
+Json toJson(const Sampling& sampling);
 
 /// Adds `order` and `coarser` to every row: for each part of its error the exponent p with which
 /// the error went as spacing^p from the family's next coarser row to this one. Null where there is
 /// none, and where an error is at its floor: below 1e-9 (the references' own accuracy), or in the
 /// total less than half due to sampling. Tested by: error_grid_test.cpp
-void addOrders(nlohmann::json& rows);
+void addOrders(Json& rows);
 
 /// Indices of the rows that no other beats both in cost and in total RMSE, cheapest first; rows
 /// without a cost are left out.
-std::vector<std::size_t> frontOf(const nlohmann::json& rows,
-                                 std::optional<double> (*cost)(const nlohmann::json& row));
+std::vector<std::size_t> frontOf(const Json& rows, std::optional<double> (*cost)(const Json& row));
 
-double totalRmse(const nlohmann::json& row);
+double totalRmse(const Json& row);
 
 } // namespace slabcast

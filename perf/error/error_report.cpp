@@ -3,8 +3,6 @@
 #include <optional>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "core/base/stopwatch.h"
 #include "core/plan/settings_table.h"
 #include "perf/csv.h"
@@ -13,12 +11,11 @@
 #include "perf/error/error_table_json.h"
 #include "perf/error/reference_pictures.h"
 #include "perf/error/scene_key.h"
+#include "perf/json.h"
 
 namespace slabcast {
 
 namespace {
-
-using nlohmann::json;
 
 const std::string kReferencePicture = std::string(kErrorPictures) + "/reference.png";
 
@@ -49,7 +46,7 @@ constexpr CsvColumn kColumns[] = {{"id", "/id"},
 constexpr CsvColumn kLastColumns[] = {{"date", "/date"}, {"command", "/command"}};
 
 /// All that the continuous picture depends on.
-json referenceKey(const Stage& stage, const RunInfo& run) {
+Json referenceKey(const Stage& stage, const RunInfo& run) {
     const Scene& scene = stage.scene();
     const StageDesc& o = stage.desc();
     return {{"commit", run.commit},
@@ -59,12 +56,12 @@ json referenceKey(const Stage& stage, const RunInfo& run) {
             {"space", name(scene.provided()->space)},
             {"camera", toJson(o.camera)},
             {"fov_degrees", o.fovDegrees},
-            {"size", {o.size.x, o.size.y}},
+            {"size", Json::list({o.size.x, o.size.y})},
             {"tolerance", kReferenceTolerance}};
 }
 
 /// And what a row depends on beyond its own settings.
-json rowsKey(const Stage& stage, const ErrorDesc& desc, json key) {
+Json rowsKey(const Stage& stage, const ErrorDesc& desc, Json key) {
     const StageDesc& o = stage.desc();
     const Settings& s = o.settings;
     key.update({{"device", toJson(stage.caps())},
@@ -79,10 +76,10 @@ json rowsKey(const Stage& stage, const ErrorDesc& desc, json key) {
     return key;
 }
 
-json conditions(const Stage& stage, const ErrorDesc& desc) {
+Json conditions(const Stage& stage, const ErrorDesc& desc) {
     const StageDesc& o = stage.desc();
     const Settings& s = o.settings;
-    return {{"size", {o.size.x, o.size.y}},
+    return {{"size", Json::list({o.size.x, o.size.y})},
             {"camera", toJson(o.camera)},
             {"fov_degrees", o.fovDegrees},
             {"transfer_function", stage.scene().look().tf.name},
@@ -114,26 +111,26 @@ Result<void> makeReference(const Stage& stage, ErrorStore& store, ReportFolder& 
                                                               stage.scene().provided()->space)});
 }
 
-std::optional<double> timeOf(const json& row) {
-    return row.at("frame_ms").at("median").get<double>();
+std::optional<double> timeOf(const Json& row) {
+    return row.at("frame_ms").at("median").number();
 }
 
-std::optional<double> fetchesOf(const json& row) {
-    const json& counters = row.at("counters");
-    return counters.is_null() ? std::nullopt
-                              : std::optional(counters.at("volume_fetches").get<double>() +
-                                              counters.at("skip_fetches").get<double>());
+std::optional<double> fetchesOf(const Json& row) {
+    const Json& counters = row.at("counters");
+    return counters.isNull() ? std::nullopt
+                             : std::optional(counters.at("volume_fetches").number() +
+                                             counters.at("skip_fetches").number());
 }
 
 /// What an error table keeps of the rows.
 std::vector<MeasuredError> measuredOf(const Stage& stage, const std::vector<Sampling>& grid,
-                                      const json& rows, const RunInfo& run) {
+                                      const Json& rows, const RunInfo& run) {
     const glm::ivec2 size = stage.desc().size;
     const double megapixels = 1e-6 * size.x * size.y;
     const SceneLabel label = labelOf(stage);
     std::vector<MeasuredError> measured;
     for (const Sampling& sampling : grid) {
-        for (const json& row : rows) {
+        for (const Json& row : rows) {
             if (row.at("id") == idOf(sampling)) {
                 measured.push_back(
                     {label, size, sampling, totalRmse(row), *timeOf(row) / megapixels, run.commit});
@@ -146,7 +143,7 @@ std::vector<MeasuredError> measuredOf(const Stage& stage, const std::vector<Samp
 ErrorStore openStore(const Stage& stage, const ErrorDesc& desc, const RunInfo& run,
                      ReportFolder& folder) {
     std::vector<std::string> notes;
-    const json key = referenceKey(stage, run);
+    const Json key = referenceKey(stage, run);
     ErrorStore store = ErrorStore::open(folder, key, rowsKey(stage, desc, key), notes);
     for (const std::string& note : notes) {
         if (stage.watcher().say) {
@@ -166,13 +163,13 @@ Result<std::vector<MeasuredError>> measureErrors(Stage& stage, const ErrorDesc& 
         return tl::unexpected(made.error());
     }
     const std::vector<Sampling> grid = gridOf(desc.axes, desc.quick);
-    json leftOut;
-    Result<json> rows = errorRows(stage, desc, grid, store, folder, leftOut);
+    Json leftOut;
+    Result<Json> rows = errorRows(stage, desc, grid, store, folder, leftOut);
     if (!rows) {
         return tl::unexpected(rows.error());
     }
     addOrders(*rows);
-    json report = reportHeader(run, stage);
+    Json report = reportHeader(run, stage);
     const glm::ivec2 size = stage.desc().size;
     report.update({{"started", started},
                    {"left_out", std::move(leftOut)},
@@ -181,10 +178,10 @@ Result<std::vector<MeasuredError>> measureErrors(Stage& stage, const ErrorDesc& 
                    {"reference",
                     {{"seconds", store.reference()->seconds},
                      {"tolerance", kReferenceTolerance},
-                     {"size", {size.x, size.y}},
+                     {"size", Json::list({size.x, size.y})},
                      {"picture", kReferencePicture}}},
-                   {"front", frontOf(*rows, timeOf)},
-                   {"front_by_fetches", frontOf(*rows, fetchesOf)},
+                   {"front", Json::listOf(frontOf(*rows, timeOf))},
+                   {"front_by_fetches", Json::listOf(frontOf(*rows, fetchesOf))},
                    {"rows", *rows}});
     return folder
         .write("error.csv", csvOf(*rows, columnsOf({kColumns, kMeasuredColumns, kLastColumns})))

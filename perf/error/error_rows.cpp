@@ -4,15 +4,11 @@
 #include <optional>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "perf/error/reference_pictures.h"
 
 namespace slabcast {
 
 namespace {
-
-using nlohmann::json;
 
 /// Of a row's frames: beyond this no more are timed than make a spread.
 constexpr double kEnoughMs = 2000.0;
@@ -22,8 +18,8 @@ const char* ratioName(const FramePlan& plan) {
     return plan.planes == 1 ? "ray casting" : plan.layersPerPlane == 1 ? "slicing" : "hybrid";
 }
 
-json planJson(const FramePlan& plan) {
-    json all = toJson(plan);
+Json planJson(const FramePlan& plan) {
+    Json all = toJson(plan);
     all.erase("reasons");
     all["skip"] = name(plan.skip);
     return all;
@@ -33,11 +29,11 @@ json planJson(const FramePlan& plan) {
 class ErrorRows {
 public:
     ErrorRows(Stage& stage, const ErrorDesc& desc, ErrorStore& store, ReportFolder& folder,
-              json& leftOut)
+              Json& leftOut)
         : stage_(stage), desc_(desc), store_(store), folder_(folder), leftOut_(leftOut),
           reference_(store.reference()->pixels), progress_(stage.watcher()) {}
 
-    Result<json> measure(const std::vector<Sampling>& grid);
+    Result<Json> measure(const std::vector<Sampling>& grid);
 
 private:
     /// Sampled in float64, once for all rows that take the same samples.
@@ -45,30 +41,30 @@ private:
         Lattice lattice;
         Classification classification = Classification::Post;
         std::vector<glm::dvec4> withTable;
-        json sampling, table; // the parts of the error
+        Json sampling, table; // the parts of the error
     };
 
     /// False where it cannot be had: it is left out from then on.
     bool classify(Classification classification);
-    Result<json> measureRow(const Sampling& sampling, const FramePlan& plan);
+    Result<Json> measureRow(const Sampling& sampling, const FramePlan& plan);
     const Sampled& sampledFor(const FramePlan& plan);
     Result<FrameTimes> time(const FramePlan& plan);
-    json countersOf(const FramePlan& plan);
-    Result<json> savePictures(const std::string& id, const std::vector<glm::dvec4>& picture);
+    Json countersOf(const FramePlan& plan);
+    Result<Json> savePictures(const std::string& id, const std::vector<glm::dvec4>& picture);
 
     Stage& stage_;
     const ErrorDesc& desc_;
     ErrorStore& store_;
     ReportFolder& folder_;
-    json& leftOut_;
+    Json& leftOut_;
     const std::vector<glm::dvec4>& reference_;
     ProgressLine progress_;
     std::optional<Sampled> sampled_;
-    std::vector<std::pair<FramePlan, json>> counted_; // work does not depend on the target
+    std::vector<std::pair<FramePlan, Json>> counted_; // work does not depend on the target
 };
 
-Result<json> ErrorRows::measure(const std::vector<Sampling>& grid) {
-    json rows = json::array();
+Result<Json> ErrorRows::measure(const std::vector<Sampling>& grid) {
+    Json rows = Json::list();
     std::vector<FramePlan> plans;
     for (std::size_t i = 0; i < grid.size(); ++i) {
         const Sampling& sampling = grid[i];
@@ -89,7 +85,7 @@ Result<json> ErrorRows::measure(const std::vector<Sampling>& grid) {
         if (store_.row(id) == nullptr) {
             progress_.show("row " + std::to_string(i + 1) + " of " + std::to_string(grid.size()) +
                            ": " + describe(sampling));
-            Result<json> row = measureRow(sampling, *plan);
+            Result<Json> row = measureRow(sampling, *plan);
             if (!row) {
                 return row;
             }
@@ -100,13 +96,13 @@ Result<json> ErrorRows::measure(const std::vector<Sampling>& grid) {
         rows.push_back(*store_.row(id));
     }
     if (rows.empty()) {
-        return fail(ErrorCode::VolumeTooLarge, leftOut_.at(0).at("why"));
+        return fail(ErrorCode::VolumeTooLarge, leftOut_.at(0).at("why").text());
     }
     return rows;
 }
 
 bool ErrorRows::classify(Classification classification) {
-    const auto isThis = [=](const json& entry) {
+    const auto isThis = [=](const Json& entry) {
         return entry.at("classification") == name(classification);
     };
     if (std::any_of(leftOut_.begin(), leftOut_.end(), isThis)) {
@@ -120,7 +116,7 @@ bool ErrorRows::classify(Classification classification) {
     return look.has_value();
 }
 
-Result<json> ErrorRows::measureRow(const Sampling& sampling, const FramePlan& plan) {
+Result<Json> ErrorRows::measureRow(const Sampling& sampling, const FramePlan& plan) {
     if (Result<void> ready = stage_.prepare(plan); !ready) {
         return tl::unexpected(ready.error());
     }
@@ -133,16 +129,16 @@ Result<json> ErrorRows::measureRow(const Sampling& sampling, const FramePlan& pl
         return tl::unexpected(times.error());
     }
     const Sampled& sampled = sampledFor(plan);
-    json error = {{"total", toJson(difference(*picture, reference_, plan.space))},
+    Json error = {{"total", toJson(difference(*picture, reference_, plan.space))},
                   {"sampling", sampled.sampling},
                   {"table", sampled.table},
                   {"gpu", toJson(difference(*picture, sampled.withTable, plan.space))}};
     const std::string id = idOf(sampling);
-    Result<json> pictures = savePictures(id, *picture);
+    Result<Json> pictures = savePictures(id, *picture);
     if (!pictures) {
         return pictures;
     }
-    json row = toJson(sampling);
+    Json row = toJson(sampling);
     row.update({{"id", id},
                 {"date", timestamp()},
                 {"ratio", ratioName(plan)},
@@ -186,7 +182,7 @@ Result<FrameTimes> ErrorRows::time(const FramePlan& plan) {
     return summarise(std::move(times));
 }
 
-json ErrorRows::countersOf(const FramePlan& plan) {
+Json ErrorRows::countersOf(const FramePlan& plan) {
     FramePlan work = plan;
     work.target = TargetFormat::Rgba8;
     const auto known = std::find_if(counted_.begin(), counted_.end(),
@@ -197,7 +193,7 @@ json ErrorRows::countersOf(const FramePlan& plan) {
     return counted_.emplace_back(work, toJson(stage_.countWork(plan))).second;
 }
 
-Result<json> ErrorRows::savePictures(const std::string& id,
+Result<Json> ErrorRows::savePictures(const std::string& id,
                                      const std::vector<glm::dvec4>& picture) {
     const AmplifiedDifference apart = amplified(picture, reference_, stage_.desc().size);
     const std::string thumbnailFile = std::string(kErrorPictures) + "/" + id + ".png";
@@ -214,16 +210,16 @@ Result<json> ErrorRows::savePictures(const std::string& id,
     if (Result<void> saved = save(differenceFile, apart.pixels); !saved) {
         return failure(saved);
     }
-    return json{{"thumbnail", thumbnailFile},
+    return Json{{"thumbnail", thumbnailFile},
                 {"difference", differenceFile},
                 {"difference_factor", apart.factor}};
 }
 
 } // namespace
 
-Result<json> errorRows(Stage& stage, const ErrorDesc& desc, const std::vector<Sampling>& grid,
-                       ErrorStore& store, ReportFolder& folder, json& leftOut) {
-    leftOut = json::array();
+Result<Json> errorRows(Stage& stage, const ErrorDesc& desc, const std::vector<Sampling>& grid,
+                       ErrorStore& store, ReportFolder& folder, Json& leftOut) {
+    leftOut = Json::list();
     return ErrorRows(stage, desc, store, folder, leftOut).measure(grid);
 }
 

@@ -6,22 +6,17 @@
 #include <optional>
 #include <string_view>
 
-#include <nlohmann/json.hpp>
-
 namespace slabcast {
 
 namespace {
 
-using nlohmann::json;
-
 constexpr const char* kRowsFile = "rows.jsonl";
 constexpr const char* kReferenceFile = "reference.f64";
 
-/// Takes the next line off the text, as JSON; discarded where there is none or it is something
-/// else.
-json nextLine(std::string_view& text) {
+/// Takes the next line off the text, as JSON; nothing where there is none or it is something else.
+std::optional<Json> nextLine(std::string_view& text) {
     const std::size_t length = std::min(text.find('\n'), text.size());
-    json line = json::parse(text.substr(0, length), nullptr, false);
+    std::optional<Json> line = Json::parse(text.substr(0, length));
     text.remove_prefix(std::min(length + 1, text.size()));
     return line;
 }
@@ -29,28 +24,28 @@ json nextLine(std::string_view& text) {
 /// What is read of a row before the page is: its place, and whether it is of the right kind.
 struct Member {
     const char* pointer;
-    bool (*isSound)(const json& value);
+    bool (*isSound)(const Json& value);
 };
 
-bool isText(const json& value) {
-    return value.is_string();
+bool isText(const Json& value) {
+    return value.isText();
 }
-bool isNumber(const json& value) {
-    return value.is_number();
+bool isNumber(const Json& value) {
+    return value.isNumber();
 }
-bool isThere(const json&) {
+bool isThere(const Json&) {
     return true;
 }
-bool isErrorOrNull(const json& value) {
-    return value.is_null() ||
-           (value.is_object() && value.contains("rmse") && value.at("rmse").is_number());
+bool isErrorOrNull(const Json& value) {
+    return value.isNull() ||
+           (value.isObject() && value.contains("rmse") && value.at("rmse").isNumber());
 }
-bool areCountersOrNull(const json& value) {
+bool areCountersOrNull(const Json& value) {
     const auto counts = [&value](const char* key) {
-        return value.contains(key) && value.at(key).is_number();
+        return value.contains(key) && value.at(key).isNumber();
     };
-    return value.is_null() ||
-           (value.is_object() && counts("volume_fetches") && counts("skip_fetches"));
+    return value.isNull() ||
+           (value.isObject() && counts("volume_fetches") && counts("skip_fetches"));
 }
 
 constexpr Member kMembers[] = {{"/id", isText},
@@ -70,23 +65,23 @@ constexpr Member kMembers[] = {{"/id", isText},
                                {"/pictures/thumbnail", isText},
                                {"/pictures/difference", isText}};
 
-bool isRow(const json& line) {
+bool isRow(const Json& line) {
     return std::all_of(std::begin(kMembers), std::end(kMembers), [&line](const Member& member) {
-        const json::json_pointer place(member.pointer);
-        return line.contains(place) && member.isSound(line.at(place));
+        const Json* value = line.atPointer(member.pointer);
+        return value != nullptr && member.isSound(*value);
     });
 }
 
 /// Whether a build of this commit is one that another can be told to be the same as.
-bool namesItsSources(const json& commit) {
-    return !commit.get<std::string>().ends_with("-dirty");
+bool namesItsSources(const Json& commit) {
+    return !commit.text().ends_with("-dirty");
 }
 
 /// Names of the members that two keys do not share.
-std::string difference(const json& a, const json& b) {
+std::string difference(const Json& a, const Json& b) {
     std::string names;
-    for (const auto& [name, value] : a.items()) {
-        if (!b.contains(name) || b.at(name) != value) {
+    for (const std::string& name : a.names()) {
+        if (!b.contains(name) || b.at(name) != a.at(name)) {
             names += (names.empty() ? "" : ", ") + name;
         }
     }
@@ -97,9 +92,9 @@ std::string difference(const json& a, const json& b) {
 
 struct ErrorStore::State {
     ReportFolder* folder;
-    json referenceKey, rowsKey;
+    Json referenceKey, rowsKey;
     std::optional<StoredReference> reference;
-    std::map<std::string, json> rows; // by id
+    std::map<std::string, Json> rows; // by id
 
     std::string startsAnew(const std::string& why) const {
         return folder->name() + ": " + why + ": starts anew";
@@ -111,15 +106,16 @@ struct ErrorStore::State {
 void ErrorStore::State::readReference() {
     const std::optional<std::string> file = folder->read(kReferenceFile);
     std::string_view content = file ? *file : std::string_view();
-    const json header = nextLine(content);
-    if (!header.is_object() || !header.contains("key") || header.at("key") != referenceKey ||
-        !header.contains("seconds") || !header.at("seconds").is_number()) {
+    const Json header = nextLine(content).value_or(Json());
+    if (!header.isObject() || !header.contains("key") || header.at("key") != referenceKey ||
+        !header.contains("seconds") || !header.at("seconds").isNumber()) {
         return;
     }
     StoredReference stored;
-    stored.seconds = header.at("seconds");
-    const json& size = referenceKey.at("size");
-    stored.pixels.resize(size.at(0).get<std::size_t>() * size.at(1).get<std::size_t>());
+    stored.seconds = header.at("seconds").number();
+    const Json& size = referenceKey.at("size");
+    stored.pixels.resize(static_cast<std::size_t>(size.at(0).whole()) *
+                         static_cast<std::size_t>(size.at(1).whole()));
     const std::size_t bytes = stored.pixels.size() * sizeof(glm::dvec4);
     if (content.size() >= bytes) {
         std::memcpy(stored.pixels.data(), content.data(), bytes);
@@ -134,8 +130,8 @@ void ErrorStore::State::readRows(std::vector<std::string>& notes) {
         return;
     }
     std::string_view content = *file;
-    const json key = nextLine(content);
-    if (!key.is_object()) {
+    const Json key = nextLine(content).value_or(Json());
+    if (!key.isObject()) {
         notes.push_back(damaged);
         return;
     }
@@ -143,14 +139,14 @@ void ErrorStore::State::readRows(std::vector<std::string>& notes) {
         notes.push_back(startsAnew("holds rows that differ in " + difference(rowsKey, key)));
         return;
     }
-    for (json row = nextLine(content); !row.is_discarded(); row = nextLine(content)) {
-        if (!isRow(row)) {
+    while (std::optional<Json> row = nextLine(content)) {
+        if (!isRow(*row)) {
             notes.push_back(damaged);
             rows.clear();
             return;
         }
-        const std::string id = row.at("id");
-        rows[id] = std::move(row);
+        const std::string id = row->at("id").text();
+        rows[id] = std::move(*row);
     }
     notes.push_back(folder->name() + ": " + std::to_string(rows.size()) +
                     " rows of an earlier run with the same settings are kept");
@@ -161,7 +157,7 @@ ErrorStore::ErrorStore(ErrorStore&&) noexcept = default;
 ErrorStore& ErrorStore::operator=(ErrorStore&&) noexcept = default;
 ErrorStore::~ErrorStore() = default;
 
-ErrorStore ErrorStore::open(ReportFolder& folder, const json& referenceKey, const json& rowsKey,
+ErrorStore ErrorStore::open(ReportFolder& folder, const Json& referenceKey, const Json& rowsKey,
                             std::vector<std::string>& notes) {
     auto state = std::make_unique<State>();
     state->folder = &folder;
@@ -182,7 +178,7 @@ const StoredReference* ErrorStore::reference() const {
 }
 
 Result<void> ErrorStore::setReference(StoredReference reference) {
-    const json header = {{"key", state_->referenceKey}, {"seconds", reference.seconds}};
+    const Json header = {{"key", state_->referenceKey}, {"seconds", reference.seconds}};
     std::string content = header.dump() + "\n";
     content.append(reinterpret_cast<const char*>(reference.pixels.data()),
                    reference.pixels.size() * sizeof(glm::dvec4));
@@ -190,19 +186,19 @@ Result<void> ErrorStore::setReference(StoredReference reference) {
     return state_->folder->write(kReferenceFile, content);
 }
 
-const json* ErrorStore::row(const std::string& id) const {
+const Json* ErrorStore::row(const std::string& id) const {
     const auto found = state_->rows.find(id);
     if (found == state_->rows.end()) {
         return nullptr;
     }
-    const json& pictures = found->second.at("pictures");
-    const bool there = state_->folder->has(pictures.at("thumbnail").get<std::string>()) &&
-                       state_->folder->has(pictures.at("difference").get<std::string>());
+    const Json& pictures = found->second.at("pictures");
+    const bool there = state_->folder->has(pictures.at("thumbnail").text()) &&
+                       state_->folder->has(pictures.at("difference").text());
     return there ? &found->second : nullptr;
 }
 
-Result<void> ErrorStore::add(json row) {
-    const std::string id = row.at("id");
+Result<void> ErrorStore::add(Json row) {
+    const std::string id = row.at("id").text();
     state_->rows[id] = std::move(row);
     std::string content = state_->rowsKey.dump() + "\n";
     for (const auto& entry : state_->rows) {

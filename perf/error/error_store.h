@@ -5,8 +5,8 @@
 #include <vector>
 
 #include <glm/glm.hpp>
-#include <nlohmann/json_fwd.hpp>
 
+#include "perf/json.h"
 #include "perf/report_folder.h"
 
 namespace slabcast {
@@ -26,8 +26,8 @@ class ErrorStore {
 public:
     /// Never fails: what cannot be read is not there, and rows that are damaged start anew. `notes`
     /// receives lines for people. Borrows the folder.
-    static ErrorStore open(ReportFolder& folder, const nlohmann::json& referenceKey,
-                           const nlohmann::json& rowsKey, std::vector<std::string>& notes);
+    static ErrorStore open(ReportFolder& folder, const Json& referenceKey, const Json& rowsKey,
+                           std::vector<std::string>& notes);
     ErrorStore(ErrorStore&&) noexcept;
     ErrorStore& operator=(ErrorStore&&) noexcept;
     ~ErrorStore();
@@ -38,9 +38,9 @@ public:
     Result<void> setReference(StoredReference reference);
 
     /// Null where it is not finished, or one of its pictures is gone.
-    const nlohmann::json* row(const std::string& id) const;
+    const Json* row(const std::string& id) const;
     /// Fails: as the folder.
-    Result<void> add(nlohmann::json row);
+    Result<void> add(Json row);
 
 private:
     struct State;

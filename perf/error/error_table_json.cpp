@@ -4,16 +4,13 @@
 #include <span>
 #include <tuple>
 
-#include <nlohmann/json.hpp>
-
 #include "perf/error/error_grid.h"
 #include "perf/error/scene_key.h"
+#include "perf/json.h"
 
 namespace slabcast {
 
 namespace {
-
-using nlohmann::json;
 
 constexpr int kVersion = 3;
 constexpr double kMost = 1e300;
@@ -21,25 +18,25 @@ constexpr double kMost = 1e300;
 /// Reads members of one row; the first that is missing or of another kind is what is wrong.
 class RowReader {
 public:
-    explicit RowReader(const json& row) : row_(row) {}
+    explicit RowReader(const Json& row) : row_(row) {}
 
     std::string text(const char* key) {
-        const json* value = member(key, &json::is_string);
-        return value == nullptr ? "" : value->get<std::string>();
+        const Json* value = member(key, &Json::isText);
+        return value == nullptr ? "" : value->text();
     }
     bool flag(const char* key) {
-        const json* value = member(key, &json::is_boolean);
-        return value != nullptr && value->get<bool>();
+        const Json* value = member(key, &Json::isBool);
+        return value != nullptr && value->flag();
     }
     double number(const char* key, double low, double high) {
-        const json* value = member(key, &json::is_number);
-        return value == nullptr ? low : inside(key, value->get<double>(), low, high);
+        const Json* value = member(key, &Json::isNumber);
+        return value == nullptr ? low : inside(key, value->number(), low, high);
     }
     glm::ivec2 size(const char* key) {
-        const json* value = member(key, &json::is_array);
-        const bool sound = value != nullptr && value->size() == 2 &&
-                           value->at(0).is_number_integer() && value->at(1).is_number_integer();
-        return sound ? glm::ivec2(value->at(0).get<int>(), value->at(1).get<int>())
+        const Json* value = member(key, &Json::isList);
+        const bool sound = value != nullptr && value->size() == 2 && value->at(0).isWhole() &&
+                           value->at(1).isWhole();
+        return sound ? glm::ivec2(value->at(0).whole(), value->at(1).whole())
                      : (complain(key), glm::ivec2(0));
     }
     /// One of the values that are named so.
@@ -59,8 +56,8 @@ public:
     const std::string& wrong() const { return wrong_; }
 
 private:
-    const json* member(const char* key, bool (json::*isOfKind)() const) {
-        if (row_.is_object() && row_.contains(key) && (row_.at(key).*isOfKind)()) {
+    const Json* member(const char* key, bool (Json::*isOfKind)() const) {
+        if (row_.isObject() && row_.contains(key) && (row_.at(key).*isOfKind)()) {
             return &row_.at(key);
         }
         complain(key);
@@ -71,17 +68,17 @@ private:
     }
     void complain(const char* key) { wrong_ = wrong_.empty() ? std::string("bad ") + key : wrong_; }
 
-    const json& row_;
+    const Json& row_;
     std::string wrong_;
 };
 
-json rowOf(const MeasuredError& m) {
-    json row = toJson(m.sampling);
+Json rowOf(const MeasuredError& m) {
+    Json row = toJson(m.sampling);
     row.update({{"volume", m.scene.volume},
                 {"tf", m.scene.tf},
                 {"fingerprint", m.scene.fingerprint},
                 {"space", name(m.scene.space)},
-                {"size", {m.size.x, m.size.y}},
+                {"size", Json::list({m.size.x, m.size.y})},
                 {"rmse", m.rmse},
                 {"ms_per_megapixel", m.msPerMegapixel},
                 {"commit", m.commit}});
@@ -109,23 +106,23 @@ MeasuredError measuredIn(RowReader& row) {
 } // namespace
 
 std::string errorTableText(const std::vector<MeasuredError>& table) {
-    json rows = json::array();
+    Json rows = Json::list();
     for (const MeasuredError& m : table) {
         rows.push_back(rowOf(m));
     }
-    return json{{"version", kVersion}, {"rows", std::move(rows)}}.dump(1) + "\n";
+    return Json{{"version", kVersion}, {"rows", std::move(rows)}}.dump(1) + "\n";
 }
 
 Result<std::vector<MeasuredError>> parseErrorTable(std::string_view text) {
-    const json content = json::parse(text, nullptr, false);
-    if (!content.is_object() || !content.contains("version") || !content.contains("rows")) {
+    const Json content = Json::parse(text).value_or(Json());
+    if (!content.isObject() || !content.contains("version") || !content.at("rows").isList()) {
         return fail(ErrorCode::FileUnreadable, "it is something else, or cut short");
     }
     if (content.at("version") != kVersion) {
         return fail(ErrorCode::FileUnreadable, "of another version");
     }
     std::vector<MeasuredError> table;
-    for (const json& row : content.at("rows")) {
+    for (const Json& row : content.at("rows")) {
         RowReader reader(row);
         table.push_back(measuredIn(reader));
         if (!reader.wrong().empty()) {
@@ -150,9 +147,10 @@ std::vector<MeasuredError> refreshed(std::vector<MeasuredError> table,
 SceneLabel labelOf(const Stage& stage) {
     const Scene& scene = stage.scene();
     const glm::ivec3 dims = stage.info().dims;
-    const std::string content = json{statisticsKey(scene.statistics()),
-                                     placementKey(scene.geometry()), transferKey(scene.look().tf)}
-                                    .dump();
+    const std::string content =
+        Json::list({statisticsKey(scene.statistics()), placementKey(scene.geometry()),
+                    transferKey(scene.look().tf)})
+            .dump();
     const auto edge = [](int length) { return std::to_string(length); };
     return {stage.info().name + " " + edge(dims.x) + "x" + edge(dims.y) + "x" + edge(dims.z),
             scene.look().tf.name, fingerprint(std::as_bytes(std::span(content))),

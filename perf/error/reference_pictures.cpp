@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <nlohmann/json.hpp>
-
 #include "core/reference/continuous.h"
 #include "perf/number.h"
 
@@ -138,9 +136,9 @@ AmplifiedDifference amplified(const std::vector<glm::dvec4>& picture,
     return {fromTheTop(size, [&](std::size_t i) { return factor * apart(i); }), factor};
 }
 
-nlohmann::json toJson(const PictureDifference& d) {
+Json toJson(const PictureDifference& d) {
     return {{"rmse", d.rmse},
-            {"psnr", std::isfinite(d.psnr) ? nlohmann::json(d.psnr) : nlohmann::json()},
+            {"psnr", std::isfinite(d.psnr) ? Json(d.psnr) : Json()},
             {"max", d.max},
             {"mean_delta_e", d.meanDeltaE},
             {"p999_delta_e", d.p999DeltaE}};

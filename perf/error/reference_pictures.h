@@ -2,10 +2,9 @@
 
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "core/reference/discrete.h"
 #include "core/reference/picture_difference.h"
+#include "perf/json.h"
 #include "perf/stage.h"
 
 namespace slabcast {
@@ -38,6 +37,6 @@ struct AmplifiedDifference {
 AmplifiedDifference amplified(const std::vector<glm::dvec4>& picture,
                               const std::vector<glm::dvec4>& reference, glm::ivec2 size);
 
-nlohmann::json toJson(const PictureDifference& difference);
+Json toJson(const PictureDifference& difference);
 
 } // namespace slabcast

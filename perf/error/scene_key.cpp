@@ -1,10 +1,6 @@
 #include "perf/error/scene_key.h"
 
-#include <nlohmann/json.hpp>
-
 namespace slabcast {
-
-using nlohmann::json;
 
 std::string fingerprint(std::span<const std::byte> bytes) {
     std::uint64_t hash = 14695981039346656037ULL;
@@ -18,8 +14,8 @@ std::string fingerprint(std::span<const std::byte> bytes) {
     return digits;
 }
 
-json placementKey(const VolumeGeometry& geometry) {
-    json matrix = json::array();
+Json placementKey(const VolumeGeometry& geometry) {
+    Json matrix = Json::list();
     const glm::dmat4 modelFromUvw = geometry.modelFromUvw();
     for (int column = 0; column < 4; ++column) {
         for (int row = 0; row < 3; ++row) {
@@ -27,19 +23,19 @@ json placementKey(const VolumeGeometry& geometry) {
         }
     }
     const glm::ivec3 dims = geometry.dims;
-    return {{"dims", {dims.x, dims.y, dims.z}}, {"model_from_uvw", std::move(matrix)}};
+    return {{"dims", Json::list({dims.x, dims.y, dims.z})}, {"model_from_uvw", std::move(matrix)}};
 }
 
-json transferKey(const TransferFunction& tf) {
-    json points = json::array();
+Json transferKey(const TransferFunction& tf) {
+    Json points = Json::list();
     for (const TransferPoint& p : tf.points) {
-        points.push_back({p.value, p.color.x, p.color.y, p.color.z, p.opacity});
+        points.push_back(Json::list({p.value, p.color.x, p.color.y, p.color.z, p.opacity}));
     }
     return {{"opacity_unit_mm", tf.opacityUnitMm}, {"points", std::move(points)}};
 }
 
-json statisticsKey(const VolumeStatistics& s) {
-    return {s.min, s.max, s.mean, s.standardDeviation, s.histogram};
+Json statisticsKey(const VolumeStatistics& s) {
+    return Json::list({s.min, s.max, s.mean, s.standardDeviation, Json::listOf(s.histogram)});
 }
 
 } // namespace slabcast

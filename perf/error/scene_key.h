@@ -4,10 +4,9 @@
 #include <span>
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "core/transfer/transfer_function.h"
 #include "core/volume/statistics.h"
+#include "perf/json.h"
 
 namespace slabcast {
 
@@ -16,8 +15,8 @@ namespace slabcast {
 /// FNV-1a: equal content is told from other, no more is needed.
 std::string fingerprint(std::span<const std::byte> bytes);
 
-nlohmann::json placementKey(const VolumeGeometry& geometry); // dimensions included
-nlohmann::json transferKey(const TransferFunction& tf);
-nlohmann::json statisticsKey(const VolumeStatistics& statistics);
+Json placementKey(const VolumeGeometry& geometry); // dimensions included
+Json transferKey(const TransferFunction& tf);
+Json statisticsKey(const VolumeStatistics& statistics);
 
 } // namespace slabcast

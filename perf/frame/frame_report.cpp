@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <numeric>
 
-#include <nlohmann/json.hpp>
-
 #include "perf/error/reference_pictures.h"
+#include "perf/json.h"
 #include "perf/settings_json.h"
 
 namespace slabcast {
-
-using nlohmann::json;
 
 Result<Turn> drawTurn(Stage& stage, const FramePlan& plan, int frames, bool encoded) {
     if (frames > 1) {
@@ -62,12 +59,12 @@ Result<CostPicture> drawCosts(Stage& stage, const FramePlan& plan, HeatmapQuanti
 std::string frameReport(Stage& stage, const FramePlan& plan, const Settings& settings,
                         const FrameFindings& findings, const RunInfo& run) {
     const GpuMemory gpu = stage.renderer().gpuMemory();
-    json skip = toJson(stage.scene().skip());
-    if (!skip.is_null()) {
+    Json skip = toJson(stage.scene().skip());
+    if (!skip.isNull()) {
         skip["skips"] = plan.skip != SkipStructure::None; // what the plan has a use for
         skip["tightens"] = plan.tighten;
     }
-    json report = {{"device", toJson(stage.caps())},
+    Json report = {{"device", toJson(stage.caps())},
                    {"commit", run.commit},
                    {"volume", toJson(stage.info())},
                    {"plan", toJson(plan)},

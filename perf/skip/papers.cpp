@@ -1,14 +1,11 @@
 #include "perf/skip/papers.h"
 
 #include <array>
-
-#include <nlohmann/json.hpp>
+#include <utility>
 
 namespace slabcast::skipbench {
 
 namespace {
-
-using nlohmann::json;
 
 /// Frame times without a structure and with each, and what the structures took to generate, ms.
 struct FaludiDataset {
@@ -93,40 +90,44 @@ constexpr RauterDataset kRauter[] = {{"manix",
                                         {15.28, 0.79, 1.08, 1.68, 2.86, 5.39},
                                         {9.76, 0.66, 0.79, 1.26, 2.09, 3.60}}}}};
 
-json faludi() {
-    json datasets = json::array();
+Json faludi() {
+    Json datasets = Json::list();
     for (const FaludiDataset& d : kFaludi) {
         datasets.push_back({{"name", d.name},
-                            {"dims", d.dims},
-                            {"marching_only", d.marching},
-                            {"early_exit", d.earlyExit},
-                            {"shading", d.shading},
-                            {"generation", d.generation}});
+                            {"dims", Json::listOf(d.dims)},
+                            {"marching_only", Json::listOf(d.marching)},
+                            {"early_exit", Json::listOf(d.earlyExit)},
+                            {"shading", Json::listOf(d.shading)},
+                            {"generation", Json::listOf(d.generation)}});
     }
     return {{"source", "Faludi et al. 2021, table 1"},
             {"device", "AMD Radeon RX 6800 XT, 2160x2160 pixels"},
-            {"structures",
-             {"none", "distance map", "boolean-octree", "minmax-octree", "bitfield-octree"}},
+            {"structures", Json::list({"none", "distance map", "boolean-octree", "minmax-octree",
+                                       "bitfield-octree"})},
             {"datasets", std::move(datasets)}};
 }
 
-json rauter() {
-    json datasets = json::array();
+Json rauter() {
+    Json datasets = Json::list();
     for (const RauterDataset& d : kRauter) {
+        Json update = Json::list();
+        for (const auto& ms : d.update) {
+            update.push_back(Json::listOf(ms));
+        }
         datasets.push_back({{"name", d.name},
-                            {"dims", d.dims},
-                            {"initialisation", d.initialisation},
-                            {"update", d.update}});
+                            {"dims", Json::listOf(d.dims)},
+                            {"initialisation", Json::listOf(d.initialisation)},
+                            {"update", std::move(update)}});
     }
     return {{"source", "Rauter et al. 2024, table 1"},
             {"device", "NVIDIA RTX 4090, blocks of 4 voxels"},
-            {"partitions", {16, 32, 64, 128, 256}},
+            {"partitions", Json::list({16, 32, 64, 128, 256})},
             {"datasets", std::move(datasets)}};
 }
 
 } // namespace
 
-json publishedTables() {
+Json publishedTables() {
     return {{"faludi", faludi()}, {"rauter", rauter()}};
 }
 

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include "perf/json.h"
 
 namespace slabcast::skipbench {
 
 /// What the papers measured on their devices, with where it stands: milliseconds as published, to
 /// be compared as ratios within one line only.
-nlohmann::json publishedTables();
+Json publishedTables();
 
 } // namespace slabcast::skipbench

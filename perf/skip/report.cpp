@@ -1,8 +1,7 @@
 #include "perf/skip/report.h"
 
-#include <nlohmann/json.hpp>
-
 #include "perf/csv.h"
+#include "perf/json.h"
 #include "perf/report_json.h"
 #include "perf/skip/figures.h"
 #include "perf/skip/papers.h"
@@ -11,8 +10,6 @@
 namespace slabcast::skipbench {
 
 namespace {
-
-using nlohmann::json;
 
 constexpr CsvColumn kColumns[] = {{"table", "/table"},
                                   {"volume", "/volume"},
@@ -59,13 +56,13 @@ const char* name(Modality modality) {
     return modality == Modality::Ct ? "ct" : modality == Modality::Mr ? "mr" : "unknown";
 }
 
-json timesOf(const std::vector<double>& ms) {
+Json timesOf(const std::vector<double>& ms) {
     return toJson(summarise(ms));
 }
 
 /// Structure and parameters: no others than the structure's own.
-json fieldsOf(const SkipOptions& o) {
-    json row{{"structure", name(o.structure)}};
+Json fieldsOf(const SkipOptions& o) {
+    Json row{{"structure", name(o.structure)}};
     if (o.structure != SkipStructure::None) {
         row["block_edge"] = o.blockEdgeVoxels;
     }
@@ -82,7 +79,7 @@ json fieldsOf(const SkipOptions& o) {
     return row;
 }
 
-json fieldsOf(const FramePlan& plan) {
+Json fieldsOf(const FramePlan& plan) {
     return {{"planes", plan.planes},
             {"layers_per_plane", plan.layersPerPlane},
             {"tighten", plan.tighten},
@@ -90,22 +87,22 @@ json fieldsOf(const FramePlan& plan) {
             {"variant", name(plan.variant)}};
 }
 
-json fieldsOf(const Cube& cube) {
+Json fieldsOf(const Cube& cube) {
     return {{"edge", cube.edge}, {"volume_bytes", cube.volumeBytes}, {"codes_ms", cube.codesMs}};
 }
 
-json fieldsOf(const Raced& raced) {
+Json fieldsOf(const Raced& raced) {
     return {{"frame_ms", timesOf(raced.samples)},
-            {"samples", raced.samples},
+            {"samples", Json::listOf(raced.samples)},
             {"speedup", raced.speedup}};
 }
 
-json fieldsOf(const Memory& memory) {
+Json fieldsOf(const Memory& memory) {
     return {{"gpu_bytes", memory.gpuBytes}, {"host_bytes", memory.hostBytes}};
 }
 
-json fieldsOf(const Build& build) {
-    json row{{"gpu_build_ms", timesOf(build.gpuMs)}};
+Json fieldsOf(const Build& build) {
+    Json row{{"gpu_build_ms", timesOf(build.gpuMs)}};
     if (!build.gpuRefused.empty()) {
         row["gpu_refused"] = build.gpuRefused;
     }
@@ -120,31 +117,31 @@ json fieldsOf(const Build& build) {
     return row;
 }
 
-json fieldsOf(const Partitions& partitions) {
+Json fieldsOf(const Partitions& partitions) {
     if (!partitions.refused.empty()) {
         return {{"refused", partitions.refused}};
     }
-    json row = fieldsOf(partitions.memory);
+    Json row = fieldsOf(partitions.memory);
     row["init_ms"] = partitions.initMs;
     return row;
 }
 
-json fieldsOf(const Transfer& transfer) {
+Json fieldsOf(const Transfer& transfer) {
     return {{"tf", transfer.key}, {"tf_name", transfer.name}};
 }
 
-json fieldsOf(const Rebuild& rebuild) {
+Json fieldsOf(const Rebuild& rebuild) {
     return {{"build_ms", timesOf(rebuild.ms)}, {"of_ranges_ms", timesOf(rebuild.ofRangesMs)}};
 }
 
-json fieldsOf(const Merge& merge) {
+Json fieldsOf(const Merge& merge) {
     return {{"update_ms", timesOf(merge.ms)},
             {"speedup", merge.speedup},
             {"speedup_of_ranges", merge.speedupOfRanges}};
 }
 
-json fieldsOf(const Row& row) {
-    json all = fieldsOf(row.options);
+Json fieldsOf(const Row& row) {
+    Json all = fieldsOf(row.options);
     all.update({{"table", name(row.table)}, {"volume", row.volume}});
     const auto addIf = [&all](const auto& part) {
         if (part) {
@@ -177,8 +174,8 @@ json fieldsOf(const Row& row) {
     return all;
 }
 
-json fieldsOf(const VolumeRecord& record) {
-    json volume = toJson(record.info);
+Json fieldsOf(const VolumeRecord& record) {
+    Json volume = toJson(record.info);
     volume.update({{"name", record.name},
                    {"input", record.input},
                    {"modality", name(record.info.modality)},
@@ -190,20 +187,20 @@ json fieldsOf(const VolumeRecord& record) {
 }
 
 template <class T>
-json orNull(const std::optional<T>& value) {
-    return value ? json(*value) : json();
+Json orNull(const std::optional<T>& value) {
+    return value ? Json(*value) : Json();
 }
 
 /// What programs ask of a figure.
-json judgement(const Figure& figure) {
+Json judgement(const Figure& figure) {
     return {{"value", orNull(figure.value)},
             {"goal", orNull(figure.goal)},
             {"sense", name(figure.sense)},
             {"reached", orNull(figure.reached())}};
 }
 
-json fieldsOf(const Figure& figure) {
-    json all = judgement(figure);
+Json fieldsOf(const Figure& figure) {
+    Json all = judgement(figure);
     all.update({{"key", figure.key},
                 {"name", figure.name},
                 {"volume", figure.volume},
@@ -212,8 +209,8 @@ json fieldsOf(const Figure& figure) {
 }
 
 template <class T>
-json listOf(std::span<const T> items) {
-    json list = json::array();
+Json listOf(std::span<const T> items) {
+    Json list = Json::list();
     for (const T& item : items) {
         list.push_back(fieldsOf(item));
     }
@@ -221,31 +218,31 @@ json listOf(std::span<const T> items) {
 }
 
 /// Numbers alone, by the names of volumes and figures.
-json summaryOf(std::span<const Figure> figures) {
+Json summaryOf(std::span<const Figure> figures) {
     const Tally tally = tallyOf(figures);
-    json volumes = json::object();
+    Json volumes = Json::object();
     for (const Figure& figure : figures) {
         volumes[figure.volume][figure.key] = judgement(figure);
     }
     return {{"judged", tally.judged}, {"reached", tally.reached}, {"volumes", std::move(volumes)}};
 }
 
-json conditionsOf(const Desc& desc) {
+Json conditionsOf(const Desc& desc) {
     const StageDesc& stage = desc.stage;
     const OrbitCamera& camera = stage.camera;
     const Settings& s = stage.settings;
-    return {{"size", {stage.size.x, stage.size.y}},
-            {"camera", {camera.azimuthDegrees, camera.elevationDegrees, camera.distanceRadii}},
+    return {{"size", Json::list({stage.size.x, stage.size.y})},
+            {"camera", toJson(camera)},
             {"fov_degrees", stage.fovDegrees},
             {"layer_spacing_voxels", s.layerSpacingVoxels},
             {"lattice", name(s.lattice)},
             {"target", name(s.target)},
             {"space", name(s.space)},
             {"classification", name(s.classification)},
-            {"termination", s.termination ? json(*s.termination) : json("off")},
+            {"termination", s.termination ? Json(*s.termination) : Json("off")},
             {"frames_per_row_at_most", desc.frames},
             {"partition_budget_bytes", stage.settings.skipOptions.memoryBudgetBytes},
-            {"sizes", desc.sizes},
+            {"sizes", Json::listOf(desc.sizes)},
             {"quick", desc.quick}};
 }
 
@@ -253,7 +250,7 @@ json conditionsOf(const Desc& desc) {
 
 Report reportOf(const Desc& desc, const Measured& measured, const RunInfo& info,
                 const gl::Caps& caps) {
-    json report = reportHeader(info, caps);
+    Json report = reportHeader(info, caps);
     report["conditions"] = conditionsOf(desc);
     report["volumes"] = listOf(measured.volumes);
     report["figures"] = listOf(measured.figures);

@@ -4,29 +4,26 @@
 #include <cctype>
 #include <cmath>
 
-#include <nlohmann/json.hpp>
-
 #include "core/base/stopwatch.h"
 #include "perf/csv.h"
+#include "perf/json.h"
 #include "perf/stability/bench.h"
 
 namespace slabcast::stability {
 
 namespace {
 
-using nlohmann::json;
-
 constexpr CsvColumn kColumns[] = {
     {"family", "/family"},     {"name", "/name"}, {"quantity", "/quantity"}, {"bound", "/bound"},
     {"measured", "/measured"}, {"pass", "/pass"}, {"failure", "/failure"},   {"reason", "/reason"}};
 
 /// JSON knows neither NaN nor infinity.
-json finite(double value) {
-    return std::isfinite(value) ? json(value) : json();
+Json finite(double value) {
+    return std::isfinite(value) ? Json(value) : Json();
 }
 
-json toJson(const Series& series) {
-    json result = {{"group", series.group},
+Json toJson(const Series& series) {
+    Json result = {{"group", series.group},
                    {"x", series.x},
                    {"y", finite(series.y)},
                    {"x_label", series.xLabel},
@@ -37,10 +34,10 @@ json toJson(const Series& series) {
     return result;
 }
 
-json toJson(const LeftOut& leftOut) {
-    return {{"plan", leftOut.plan},
+Json toJson(const LeftOut& leftOut) {
+    return {{"plan", Json::listOf(leftOut.plan)},
             {"active_uniforms", leftOut.activeUniforms},
-            {"samplers", leftOut.samplers},
+            {"samplers", Json::listOf(leftOut.samplers)},
             {"fragments", leftOut.fragments},
             {"layers", leftOut.layers},
             {"volume_and_skip_bytes", leftOut.volumeAndSkipBytes},
@@ -73,8 +70,8 @@ ReportPicture forPage(const Picture& picture) {
 }
 
 /// One case, and its pictures as files.
-Result<json> written(const Case& c, ReportFolder& folder) {
-    json result = {{"family", c.family},     {"name", c.name},
+Result<Json> written(const Case& c, ReportFolder& folder) {
+    Json result = {{"family", c.family},     {"name", c.name},
                    {"quantity", c.quantity}, {"bound", finite(c.bound)},
                    {"reason", c.reason},     {"measured", finite(c.measured)},
                    {"pass", c.pass()}};
@@ -125,8 +122,8 @@ void runFamilies(Bench& bench, std::span<const Family> run, const Watcher& watch
     bench.setWatcher({});
 }
 
-json namesOf(std::span<const Family> families) {
-    json result = json::array();
+Json namesOf(std::span<const Family> families) {
+    Json result = Json::list();
     for (const Family& family : families) {
         result.push_back({{"name", family.name}, {"title", family.title}});
     }
@@ -140,13 +137,13 @@ Result<void> measure(Bench& bench, const std::string& family, const RunInfo& run
     const Stopwatch watch;
     const std::vector<Family> families = chosen(family);
     runFamilies(bench, families, watcher);
-    json report = reportHeader(run, bench.caps());
+    Json report = reportHeader(run, bench.caps());
     report.update({{"reduced", bench.reduced()},
                    {"seconds", watch.ms() / 1000.0},
                    {"families", namesOf(families)},
-                   {"cases", json::array()}});
+                   {"cases", Json::list()}});
     for (const Case& c : bench.cases()) {
-        Result<json> one = written(c, folder);
+        Result<Json> one = written(c, folder);
         if (!one) {
             return tl::unexpected(one.error());
         }

@@ -2,17 +2,14 @@
 
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
-
 #include "core/plan/settings_table.h"
 #include "perf/csv.h"
+#include "perf/json.h"
 #include "perf/number.h"
 
 namespace slabcast {
 
 namespace {
-
-using nlohmann::json;
 
 /// What is measured at every ratio.
 struct Series {
@@ -61,7 +58,7 @@ Result<Turn> drawTurn(Stage& stage, const FramePlan& plan, int frames,
 }
 
 /// One row: plan, frames of one turn, work, thumbnail.
-Result<json> measureRow(Stage& stage, const Settings& settings, int frames,
+Result<Json> measureRow(Stage& stage, const Settings& settings, int frames,
                         const std::string& thumbnailFile, ReportFolder& folder) {
     const Result<FramePlan> plan = stage.plan(settings);
     if (!plan) {
@@ -78,7 +75,7 @@ Result<json> measureRow(Stage& stage, const Settings& settings, int frames,
     // Drivers put off much of the compiling until a program is first drawn with.
     const double compileMs = stage.renderer().compileMs(plan->variant) +
                              std::max(0.0, turn->firstMs - turn->times.median);
-    return json{
+    return Json{
         {"label", std::to_string(plan->planes) + "x" + std::to_string(plan->layersPerPlane)},
         {"classification", name(plan->variant.classification)},
         {"termination", terminates ? fixed(plan->terminationAlpha, 4) : "off"},
@@ -96,12 +93,12 @@ Result<json> measureRow(Stage& stage, const Settings& settings, int frames,
         {"thumbnail", thumbnailFile}};
 }
 
-json conditions(const Stage& stage, int frames) {
+Json conditions(const Stage& stage, int frames) {
     const StageDesc& o = stage.desc();
     const Settings& s = o.settings;
     const SceneFacts facts = stage.scene().facts();
     const int total = totalLayers(s, facts);
-    return {{"size", {o.size.x, o.size.y}},
+    return {{"size", Json::list({o.size.x, o.size.y})},
             {"camera", toJson(o.camera)},
             {"fov_degrees", o.fovDegrees},
             {"transfer_function", stage.scene().look().tf.name},
@@ -120,10 +117,10 @@ json conditions(const Stage& stage, int frames) {
 }
 
 /// The part of the report that is the same for all rows; taken last, when memory has seen its peak.
-json header(const Stage& stage, int frames, const RunInfo& run) {
+Json header(const Stage& stage, int frames, const RunInfo& run) {
     const GpuMemory gpu = stage.renderer().gpuMemory();
     const BuiltSkip& skip = stage.scene().skip();
-    json result = reportHeader(run, stage);
+    Json result = reportHeader(run, stage);
     result["conditions"] = conditions(stage, frames);
     result["memory"] = {{"peak_host_bytes", run.peakHostBytes ? run.peakHostBytes() : 0},
                         {"volume_bytes", stage.info().bytes},
@@ -182,14 +179,14 @@ std::vector<Settings> sweepRows(const Settings& settings, const SceneFacts& fact
 Result<void> sweep(Stage& stage, const SweepDesc& desc, const RunInfo& run, ReportFolder& folder) {
     const std::vector<Settings> plans =
         sweepRows(stage.desc().settings, stage.scene().facts(), desc.layersPerPlane);
-    json rows = json::array();
+    Json rows = Json::list();
     ProgressLine progress(stage.watcher());
     for (const Settings& settings : plans) {
         progress.show(
             "row " + std::to_string(rows.size() + 1) + " of " + std::to_string(plans.size()) +
             ": " + std::to_string(*settings.layersPerPlane) + " layers per plane, skip " +
             name(*settings.skip) + ", " + (settings.tighten ? "tight planes" : "10-gons"));
-        Result<json> row = measureRow(
+        Result<Json> row = measureRow(
             stage, settings, desc.frames,
             std::string(kSweepThumbnails) + "/" + twoDigits(rows.size()) + ".png", folder);
         if (!row) {
@@ -197,7 +194,7 @@ Result<void> sweep(Stage& stage, const SweepDesc& desc, const RunInfo& run, Repo
         }
         rows.push_back(std::move(*row));
     }
-    json report = header(stage, desc.frames, run);
+    Json report = header(stage, desc.frames, run);
     report["rows"] = std::move(rows);
     return folder.write("sweep.csv", csvOf(report["rows"], columnsOf({kColumns, kMeasuredColumns})))
         .and_then([&] { return folder.write("sweep.json", report.dump(2) + "\n"); });

@@ -1,20 +1,18 @@
 #include <set>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "perf/csv.h"
 #include "perf/error/error_grid.h"
 #include "perf/error/error_table_json.h"
+#include "perf/json.h"
 
 namespace slabcast {
 
-using nlohmann::json;
-
 namespace {
 
-json row(const Sampling& sampling, double total, double sampled, double ms) {
-    json made = toJson(sampling);
+Json row(const Sampling& sampling, double total, double sampled, double ms) {
+    Json made = toJson(sampling);
     made["id"] = idOf(sampling);
     made["error"] = {{"total", {{"rmse", total}}},
                      {"sampling", {{"rmse", sampled}}},
@@ -24,8 +22,8 @@ json row(const Sampling& sampling, double total, double sampled, double ms) {
     return made;
 }
 
-std::optional<double> timeOf(const json& row) {
-    return row.at("frame_ms").at("median").get<double>();
+std::optional<double> timeOf(const Json& row) {
+    return row.at("frame_ms").at("median").number();
 }
 
 MeasuredError measured(const char* volume, const char* commit, double rmse) {
@@ -78,28 +76,28 @@ TEST(ErrorGrid, IdsNameTheSettings) {
 }
 
 TEST(ErrorGrid, OrdersAreOfTheNextCoarserRowOfTheFamily) {
-    json rows = {row({.layerSpacingVoxels = 1.0}, 4e-2, 4e-2, 1.0),
-                 row({.layerSpacingVoxels = 0.5}, 1e-2, 1e-2, 2.0),
-                 row({.layerSpacingVoxels = 0.5, .jitter = true}, 1e-2, 1e-2, 2.0)};
+    Json rows = Json::list({row({.layerSpacingVoxels = 1.0}, 4e-2, 4e-2, 1.0),
+                            row({.layerSpacingVoxels = 0.5}, 1e-2, 1e-2, 2.0),
+                            row({.layerSpacingVoxels = 0.5, .jitter = true}, 1e-2, 1e-2, 2.0)});
     addOrders(rows);
-    EXPECT_TRUE(rows[0].at("coarser").is_null());
+    EXPECT_TRUE(rows[0].at("coarser").isNull());
     EXPECT_EQ(rows[1].at("coarser"), rows[0].at("id"));
-    EXPECT_NEAR(rows[1].at("order").at("total").get<double>(), 2.0, 1e-12);
-    EXPECT_TRUE(rows[1].at("order").at("table").is_null()) << "at its floor";
-    EXPECT_TRUE(rows[2].at("coarser").is_null()) << "another family";
+    EXPECT_NEAR(rows[1].at("order").at("total").number(), 2.0, 1e-12);
+    EXPECT_TRUE(rows[1].at("order").at("table").isNull()) << "at its floor";
+    EXPECT_TRUE(rows[2].at("coarser").isNull()) << "another family";
 }
 
 TEST(ErrorGrid, TheFrontIsWhatNoOtherRowBeats) {
-    const json rows = {row({.layersPerPlane = 1}, 3e-2, 0.0, 5.0),
-                       row({.layersPerPlane = 2}, 4e-2, 0.0, 1.0),
-                       row({.layersPerPlane = 3}, 4e-2, 0.0, 6.0), // beaten in both
-                       row({.layersPerPlane = 4}, 1e-2, 0.0, 9.0)};
+    const Json rows = Json::list({row({.layersPerPlane = 1}, 3e-2, 0.0, 5.0),
+                                  row({.layersPerPlane = 2}, 4e-2, 0.0, 1.0),
+                                  row({.layersPerPlane = 3}, 4e-2, 0.0, 6.0), // beaten in both
+                                  row({.layersPerPlane = 4}, 1e-2, 0.0, 9.0)});
     EXPECT_EQ(frontOf(rows, timeOf), (std::vector<std::size_t>{1, 0, 3}));
-    EXPECT_TRUE(frontOf(rows, [](const json&) { return std::optional<double>(); }).empty());
+    EXPECT_TRUE(frontOf(rows, [](const Json&) { return std::optional<double>(); }).empty());
 }
 
 TEST(Csv, ALinePerRow) {
-    const json rows = {{{"a", 1.5}, {"b", {{"c", "x,\"y\""}}}}, {{"a", nullptr}}};
+    const Json rows = Json::list({{{"a", 1.5}, {"b", {{"c", "x,\"y\""}}}}, {{"a", nullptr}}});
     constexpr CsvColumn kColumns[] = {{"first", "/a"}, {"second", "/b/c"}};
     EXPECT_EQ(csvOf(rows, kColumns), "first,second\n1.5,\"x,\"\"y\"\"\"\n,\n");
 }
@@ -124,8 +122,8 @@ TEST(ErrorTableJson, WhatIsDamagedIsRefused) {
     EXPECT_FALSE(parseErrorTable("{\"version\": 1, \"rows\": []}"));
     for (const char* key : {"volume", "space", "size", "spacing", "layers", "classification",
                             "target", "termination", "jitter", "rmse", "commit"}) {
-        json content = json::parse(text);
-        content["rows"][0][key] = json::object();
+        Json content = *Json::parse(text);
+        content["rows"][0][key] = Json::object();
         const auto read = parseErrorTable(content.dump());
         ASSERT_FALSE(read) << key;
         EXPECT_EQ(read.error().code, ErrorCode::FileUnreadable);

@@ -1,22 +1,20 @@
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "perf/error/error_store.h"
+#include "perf/json.h"
 #include "tests/support/memory_folder.h"
 
 namespace slabcast {
 
-using nlohmann::json;
-
 namespace {
 
-const json kReferenceKey = {{"commit", "abc"}, {"size", {2, 1}}};
+const Json kReferenceKey = {{"commit", "abc"}, {"size", Json::list({2, 1})}};
 
-json rowsKey(const char* commit = "abc", int frames = 5) {
-    return {{"commit", commit}, {"size", {2, 1}}, {"frames", frames}};
+Json rowsKey(const char* commit = "abc", int frames = 5) {
+    return {{"commit", commit}, {"size", Json::list({2, 1})}, {"frames", frames}};
 }
 
-json finished(const std::string& id) {
+Json finished(const std::string& id) {
     return {
         {"id", id},
         {"date", "today"},
@@ -46,7 +44,7 @@ protected:
         notes.clear();
     }
 
-    ErrorStore open(const json& key = rowsKey()) {
+    ErrorStore open(const Json& key = rowsKey()) {
         return ErrorStore::open(folder, kReferenceKey, key, notes);
     }
 
