@@ -119,11 +119,28 @@ std::vector<Settings> manySettings() {
     return all;
 }
 
+constexpr const char* kCannotFetch = "a fragment cannot read what is blended under it here";
+
+class EachWay : public TerminationTest, public ::testing::WithParamInterface<Way> {
+protected:
+    void SetUp() override {
+        TerminationTest::SetUp();
+        if (!IsSkipped() && !can(GetParam())) {
+            GTEST_SKIP() << kCannotFetch;
+        }
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(Ways, EachWay, ::testing::Values(Way::Marks, Way::Fetch),
+                         [](const auto& info) {
+                             return info.param == Way::Marks ? "Marks" : "Fetch";
+                         });
+
 } // namespace
 
 // Opaque and translucent, from outside and from within: the picture of planes over each other with
 // every layer drawn, but for what termination may lose and both orders' rounding.
-TEST_F(TerminationTest, IsThePictureOfTheOtherOrderWithinTheThreshold) {
+TEST_P(EachWay, IsThePictureOfTheOtherOrderWithinTheThreshold) {
     for (const double opacity : {0.05, 0.9}) {
         const Scene scene = ballScene(opacity);
         const View views[] = {asymmetricView(scene),
@@ -132,16 +149,11 @@ TEST_F(TerminationTest, IsThePictureOfTheOtherOrderWithinTheThreshold) {
             for (const Settings& settings : manySettings()) {
                 const FramePlan over = unterminated(scene, settings, BlendOrder::BackToFront);
                 const Picture expected = draw(scene, over, view, kSize);
-                for (const Way way : {Way::Marks, Way::Fetch}) {
-                    if (!can(way)) {
-                        continue;
-                    }
-                    const FramePlan under = frontToBack(scene, settings, way, 2);
-                    EXPECT_LE(largestDifference(draw(scene, under, view, kSize), expected),
-                              lostBehind(under.target) + blendingBound(over) +
-                                  underBlendingBound(under))
-                        << describe(under) << ", opacity " << opacity;
-                }
+                const FramePlan under = frontToBack(scene, settings, GetParam(), 2);
+                EXPECT_LE(largestDifference(draw(scene, under, view, kSize), expected),
+                          lostBehind(under.target) + blendingBound(over) +
+                              underBlendingBound(under))
+                    << describe(under) << ", opacity " << opacity;
             }
         }
     }
@@ -206,15 +218,16 @@ TEST_F(TerminationTest, LeavesARayWhereTheClosedFormSays) {
         EXPECT_EQ(pixel.fragments, float(drawn)) << k;
         EXPECT_EQ(pixel.layersEvaluated, float(std::min(24, drawn - 9))) << k;
     }
-    if (can(Way::Fetch)) {
-        const FramePlan fetching = frontToBack(scene, settings, Way::Fetch);
-        const PixelWork pixel = work(scene, fetching, view, size)[middle];
-        EXPECT_EQ(pixel.fragments, 42.0F);
-        EXPECT_EQ(pixel.layersEvaluated, 7.0F);
-        settings.layersPerPlane = 5; // within the fourth plane, after the first layer of it
-        const FramePlan hybrid = frontToBack(scene, settings, Way::Fetch);
-        EXPECT_EQ(work(scene, hybrid, view, size)[middle].layersEvaluated, 7.0F);
+    if (!can(Way::Fetch)) {
+        GTEST_SKIP() << kCannotFetch;
     }
+    const FramePlan fetching = frontToBack(scene, settings, Way::Fetch);
+    const PixelWork pixel = work(scene, fetching, view, size)[middle];
+    EXPECT_EQ(pixel.fragments, 42.0F);
+    EXPECT_EQ(pixel.layersEvaluated, 7.0F);
+    settings.layersPerPlane = 5; // within the fourth plane, after the first layer of it
+    const FramePlan hybrid = frontToBack(scene, settings, Way::Fetch);
+    EXPECT_EQ(work(scene, hybrid, view, size)[middle].layersEvaluated, 7.0F);
 }
 
 TEST_F(TerminationTest, SavesWorkOnlyWhereItIsOnAndSomethingIsOpaque) {
@@ -242,41 +255,48 @@ TEST_F(TerminationTest, SavesWorkOnlyWhereItIsOnAndSomethingIsOpaque) {
                 EXPECT_EQ(on.layersEvaluated < over.layersEvaluated, saves) << k;
                 before = on.fragments;
             }
-            if (can(Way::Fetch)) {
-                const WorkCounters on =
-                    total(scene, frontToBack(scene, settings, Way::Fetch), view);
-                EXPECT_EQ(on.fragments, over.fragments);
-                EXPECT_EQ(on.layersEvaluated < over.layersEvaluated, saves);
-            }
+        }
+    }
+}
+
+TEST_F(TerminationTest, FetchingSavesLayersAndNoFragments) {
+    if (!caps().floatBlend || !can(Way::Fetch)) {
+        GTEST_SKIP() << (caps().floatBlend ? kCannotFetch : kCannotCount);
+    }
+    for (const double opacity : {0.01, 0.9}) {
+        const Scene scene = ballScene(opacity);
+        const View view = asymmetricView(scene);
+        for (const int layers : {1, 4}) {
+            const Settings settings = segments(layers, SegmentForm::Loop);
+            const WorkCounters over =
+                total(scene, unterminated(scene, settings, BlendOrder::BackToFront), view);
+            const WorkCounters on = total(scene, frontToBack(scene, settings, Way::Fetch), view);
+            EXPECT_EQ(on.fragments, over.fragments);
+            EXPECT_EQ(on.layersEvaluated<over.layersEvaluated, opacity> 0.5);
         }
     }
 }
 
 // Marks lie at the lattice's planes, not at those of a stack: what is skipped or tightened away
 // moves none.
-TEST_F(TerminationTest, SkippingChangesNothing) {
+TEST_P(EachWay, SkippingChangesNothing) {
     for (const SkipStructure structure : {SkipStructure::Proximity, SkipStructure::Blocks}) {
         const Scene scene = ballScene(0.7, false, {.structure = structure, .blockEdgeVoxels = 2});
         const View view = asymmetricView(scene);
-        for (const Way way : {Way::Marks, Way::Fetch}) {
-            if (!can(way)) {
-                continue;
-            }
-            for (const int layers : {1, 3, 16}) {
-                for (const TargetFormat target : {TargetFormat::Rgba8, TargetFormat::Rgba16f}) {
-                    Settings settings = segments(layers, SegmentForm::Loop);
-                    settings.target = target;
-                    settings.tighten = false;
-                    const Picture plain =
-                        draw(scene, frontToBack(scene, settings, way, 3), view, kSize);
-                    for (const bool tighten : {false, true}) {
-                        for (const bool skips : {false, true}) {
-                            settings.tighten = tighten;
-                            settings.skip = skips ? structure : SkipStructure::None;
-                            const FramePlan plan = frontToBack(scene, settings, way, 3);
-                            EXPECT_EQ(differingPixels(plain, draw(scene, plan, view, kSize)), 0)
-                                << describe(plan);
-                        }
+        for (const int layers : {1, 3, 16}) {
+            for (const TargetFormat target : {TargetFormat::Rgba8, TargetFormat::Rgba16f}) {
+                Settings settings = segments(layers, SegmentForm::Loop);
+                settings.target = target;
+                settings.tighten = false;
+                const Picture plain =
+                    draw(scene, frontToBack(scene, settings, GetParam(), 3), view, kSize);
+                for (const bool tighten : {false, true}) {
+                    for (const bool skips : {false, true}) {
+                        settings.tighten = tighten;
+                        settings.skip = skips ? structure : SkipStructure::None;
+                        const FramePlan plan = frontToBack(scene, settings, GetParam(), 3);
+                        EXPECT_EQ(differingPixels(plain, draw(scene, plan, view, kSize)), 0)
+                            << describe(plan);
                     }
                 }
             }
@@ -284,30 +304,25 @@ TEST_F(TerminationTest, SkippingChangesNothing) {
     }
 }
 
-TEST_F(TerminationTest, EachEyeIsItsMonoPictureAndViewsShareTheLayer) {
+TEST_P(EachWay, EachEyeIsItsMonoPictureAndViewsShareTheLayer) {
     constexpr glm::ivec2 eye(60, 48);
     const Scene scene = ballScene(0.8);
     const auto eyes = stereoViews(orbitView(scene, {20.0, 15.0, 2.2}, 50.0, eye), 8.0,
                                   2.2 * scene.geometry().boundingSphere().radiusMm);
-    for (const Way way : {Way::Marks, Way::Fetch}) {
-        if (!can(way)) {
-            continue;
-        }
-        const FramePlan plan = frontToBack(scene, segments(2, SegmentForm::Loop), way, 3);
-        const Picture mono[] = {draw(scene, plan, eyes[0], eye), draw(scene, plan, eyes[1], eye)};
-        gl::ColorTargets wide;
-        ASSERT_TRUE(wide.resize(2 * eye.x, eye.y, {GL_RGBA16F}).has_value());
-        wide.begin();
-        const Viewport places[] = {{0, 0, eye.x, eye.y}, {eye.x, 0, eye.x, eye.y}};
-        const ViewTarget both[] = {{eyes[0], wide.framebuffer(), places[0]},
-                                   {eyes[1], wide.framebuffer(), places[1]}};
-        ASSERT_TRUE(renderer().prepare(scene, plan, both).has_value());
-        ASSERT_TRUE(renderer().draw(scene, plan, both).has_value());
-        const Picture picture{{2 * eye.x, eye.y}, wide.read()};
-        EXPECT_GT(differingPixels(mono[0], mono[1]), 300);
-        for (int k = 0; k < 2; ++k) {
-            EXPECT_EQ(differingPixels(picture.part(places[k]), mono[k]), 0) << describe(plan);
-        }
+    const FramePlan plan = frontToBack(scene, segments(2, SegmentForm::Loop), GetParam(), 3);
+    const Picture mono[] = {draw(scene, plan, eyes[0], eye), draw(scene, plan, eyes[1], eye)};
+    gl::ColorTargets wide;
+    ASSERT_TRUE(wide.resize(2 * eye.x, eye.y, {GL_RGBA16F}).has_value());
+    wide.begin();
+    const Viewport places[] = {{0, 0, eye.x, eye.y}, {eye.x, 0, eye.x, eye.y}};
+    const ViewTarget both[] = {{eyes[0], wide.framebuffer(), places[0]},
+                               {eyes[1], wide.framebuffer(), places[1]}};
+    ASSERT_TRUE(renderer().prepare(scene, plan, both).has_value());
+    ASSERT_TRUE(renderer().draw(scene, plan, both).has_value());
+    const Picture picture{{2 * eye.x, eye.y}, wide.read()};
+    EXPECT_GT(differingPixels(mono[0], mono[1]), 300);
+    for (int k = 0; k < 2; ++k) {
+        EXPECT_EQ(differingPixels(picture.part(places[k]), mono[k]), 0) << describe(plan);
     }
 }
 
