@@ -24,6 +24,7 @@ Volume emptyOverSameBox(const Volume& volume, glm::ivec3 dims) {
     result.rescaleSlope = volume.rescaleSlope;
     result.rescaleIntercept = volume.rescaleIntercept;
     result.nonFiniteVoxels = volume.nonFiniteVoxels;
+    result.notes = volume.notes;
     result.voxels.resize(static_cast<std::size_t>(result.geometry.voxelCount()) *
                          bytesPerVoxel(result.type));
     return result;

@@ -55,6 +55,7 @@ struct Volume {
     std::int64_t nonFiniteVoxels =
         0; // NaN and infinities found on load, since replaced by the lowest finite data value
     std::vector<std::byte> voxels;
+    std::vector<std::string> notes; // what its reader assumed or left out: a line each
 
     /// Data value of one voxel. For tests and small loops: bulk code dispatches on the type once.
     double valueAt(glm::ivec3 voxel) const;

@@ -35,6 +35,18 @@ std::string words(const OrbitCamera& c) {
     return fmt::format("{},{},{}", c.azimuthDegrees, c.elevationDegrees, c.distanceRadii);
 }
 
+std::string words(const std::optional<glm::dvec3>& spacing) {
+    return spacing ? fmt::format("{},{},{}", spacing->x, spacing->y, spacing->z) : "";
+}
+
+std::string words(const std::vector<Selection>& selections) {
+    std::string text;
+    for (const Selection& selection : selections) {
+        text += (text.empty() ? "" : ",") + selection.key + "=" + selection.value;
+    }
+    return text;
+}
+
 } // namespace
 
 std::string shellWord(const std::string& word) {
@@ -54,11 +66,18 @@ std::string renderCommandLine(const SceneOptions& scene, const Sampling& samplin
                               const FramePlan& plan, const std::string& output) {
     const SceneOptions usual;
     const InputOptions& input = scene.input;
+    const LoadOptions& load = input.load;
     const auto number = [](double value) { return fmt::format("{}", value); };
     CommandLine line("slabcast render " + shellWord(input.volume));
     line.add("-o", output)
-        .addIf(!input.series.empty(), "--series", input.series)
-        .addIf(!input.raw.empty(), "--raw", input.raw)
+        .addIf(!load.series.empty(), "--series", load.series)
+        .addIf(!load.select.empty(), "--select", words(load.select))
+        .addIf(load.time.has_value(), "--time", fmt::format("{}", load.time.value_or(0)))
+        .addFlagIf(load.resampleUneven, "--resample")
+        .addIf(load.spacingMm.has_value(), "--spacing", words(load.spacingMm))
+        .addIf(!load.unit.empty(), "--unit", load.unit)
+        .addIf(load.raw.has_value(), "--raw", load.raw ? textOf(*load.raw) : "")
+        .addIf(load.rawSkipBytes > 0, "--skip-bytes", fmt::format("{}", load.rawSkipBytes))
         .addIf(input.downsample != 1, "--downsample", fmt::format("{}", input.downsample))
         .addFlagIf(input.exact, "--exact")
         .add("--size", fmt::format("{}x{}", scene.size.x, scene.size.y))

@@ -35,6 +35,19 @@ std::optional<OrbitCamera> parseCamera(const std::string& word) {
     return OrbitCamera{*azimuth, *elevation, *distance};
 }
 
+std::optional<std::optional<glm::dvec3>> parseSpacing(const std::string& word) {
+    const auto parts = split(word, ',');
+    glm::dvec3 spacing(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto length = parts.size() == 3 ? parseReal(parts[axis]) : std::nullopt;
+        if (!length || !std::isfinite(*length) || *length <= 0.0) {
+            return std::nullopt;
+        }
+        spacing[axis] = *length;
+    }
+    return std::optional(spacing);
+}
+
 /// Nothing where it cannot be read; a nothing within where there is to be no background.
 std::optional<std::optional<glm::dvec3>> parseBackground(const std::string& word) {
     if (word == "none") {
@@ -90,7 +103,8 @@ Result<void> checkInput(const InputOptions& o, const Given& given) {
     std::error_code error;
     const bool phantom = o.volume.starts_with("phantom:");
     const bool file = !phantom && std::filesystem::is_regular_file(o.volume, error);
-    for (const char* flag : {"--raw", "--series"}) {
+    for (const char* flag :
+         {"--raw", "--series", "--select", "--time", "--resample", "--spacing", "--unit"}) {
         if (phantom && given(flag)) {
             return fail(ErrorCode::InvalidArgument,
                         fmt::format("{}: does nothing beside {}, which is no file: leave it out",
@@ -123,17 +137,57 @@ void bindInput(Command& command, InputOptions& o) {
              .help = "the DICOM series to take, where a folder holds several",
              .word = "UID",
              .group = group},
-            o.series);
+            o.load.series);
+    command.options.push_back(
+        {.flag = "--select",
+         .help = "of several images at each place, those with these properties, as EchoTime=20",
+         .word = "KEY=VALUE,...",
+         .group = group,
+         .take = [&o](const std::string& word) -> Result<void> {
+             return parseSelections(word).map(
+                 [&](const std::vector<Selection>& all) { o.load.select = all; });
+         }});
+    addNumber(command,
+              {.flag = "--time",
+               .help = "of several volumes over time, the one to take, from 0",
+               .word = "N",
+               .group = group},
+              o.load.time, 0, 1 << 24);
+    addFlag(command,
+            {.flag = "--resample",
+             .help = "bring slices that lie at uneven distances to even ones, instead of refusing "
+                     "them",
+             .group = group},
+            o.load.resampleUneven);
+    addParsed(command,
+              {.flag = "--spacing",
+               .help = "distances between voxels in mm, in place of the file's",
+               .word = "X,Y,Z",
+               .group = group},
+              o.load.spacingMm, parseSpacing, "X,Y,Z: three positive distances in mm");
+    addText(command,
+            {.flag = "--unit",
+             .help = "unit of the values, as HU, in place of the file's",
+             .word = "UNIT",
+             .group = group},
+            o.load.unit);
     command.options.push_back(
         {.flag = "--raw",
          .help = "layout of a file without header, as 256x256x128,uint16,1x1x1.5",
          .word = "DIMS,TYPE,SPACING",
          .group = group,
-         .hides = {"--series"},
+         .hides = {"--series", "--select", "--time", "--resample"},
          .take = [&o](const std::string& word) -> Result<void> {
-             o.raw = word;
-             return parseRawLayout(word).map([](const RawLayout&) {});
+             return parseRawLayout(word).map([&](const RawLayout& layout) { o.load.raw = layout; });
          }});
+    addNumber(command,
+              {.flag = "--skip-bytes",
+               .help = "length of a header that is left out before the voxels",
+               .word = "N",
+               .usually = "0",
+               .group = group,
+               .needs = {"--raw"}},
+              o.load.rawSkipBytes, 0, std::int64_t{1} << 50);
     addNumber(command,
               {.flag = "--downsample",
                .help = "average blocks of N voxels along each axis",

@@ -4,11 +4,12 @@
 #include <filesystem>
 #include <fstream>
 
+#include <fmt/core.h>
+
 #include "core/volume/downsample.h"
 #include "core/volume/phantoms.h"
 #include "core/volume/resample.h"
 #include "platform/cli/progress.h"
-#include "platform/io/load_volume.h"
 
 namespace slabcast {
 
@@ -32,15 +33,10 @@ Result<Volume> openVolume(const InputOptions& options) {
     if (options.volume.rfind("phantom:", 0) == 0) {
         volume = makePhantom(options.volume);
     } else {
-        LoadOptions load{.series = options.series};
-        if (!options.raw.empty()) {
-            Result<RawLayout> layout = parseRawLayout(options.raw);
-            if (!layout) {
-                return tl::unexpected(layout.error());
-            }
-            load.raw = *layout;
-        }
-        volume = loadVolume(options.volume, load);
+        volume = loadVolume(options.volume, options.load);
+    }
+    for (std::size_t i = 0; volume && i < volume->notes.size(); ++i) {
+        say(fmt::format("{}: {}", options.volume, volume->notes[i]));
     }
     if (volume && options.downsample > 1) {
         volume = downsample(*volume, glm::ivec3(options.downsample));

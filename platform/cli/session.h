@@ -7,6 +7,7 @@
 #include "core/scene/device.h"
 #include "core/volume/volume.h"
 #include "platform/egl/egl_context.h"
+#include "platform/io/load_volume.h"
 
 namespace slabcast {
 
@@ -22,8 +23,7 @@ Result<Session> openSession();
 /// What is common to all commands that read a volume.
 struct InputOptions {
     std::string volume; // a file, a folder, or phantom:NAME[:SIZE]
-    std::string series;
-    std::string raw;
+    LoadOptions load;
     int downsample = 1;
     int cubeEdge = 0; // resampled to so many voxels along each axis; 0: as it is
     bool exact = false;

@@ -16,7 +16,7 @@ namespace {
 
 struct Format {
     std::string_view ending;
-    Result<Volume> (*read)(const std::filesystem::path& path);
+    Result<Volume> (*read)(const std::filesystem::path& path, const LoadOptions& options);
 };
 
 constexpr std::array<Format, 11> kFormats = {{{".nrrd", readNrrd},
@@ -31,7 +31,7 @@ constexpr std::array<Format, 11> kFormats = {{{".nrrd", readNrrd},
                                               {".tif", readImagePages},
                                               {".tiff", readImagePages}}};
 
-Result<Volume> loadFolder(const std::filesystem::path& folder, const std::string& series) {
+Result<Volume> loadFolder(const std::filesystem::path& folder, const LoadOptions& options) {
     std::error_code error;
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
@@ -47,22 +47,22 @@ Result<Volume> loadFolder(const std::filesystem::path& folder, const std::string
                                 folder.string()));
     }
     const bool isStack = !images.empty() && !holdDicom(files); // DICOM may come without its mark
-    return isStack ? readImageStack(folder, images) : readDicomSeries(folder, series);
+    return isStack ? readImageStack(folder, images, options) : readDicomSeries(folder, options);
 }
 
-Result<Volume> loadFile(const std::filesystem::path& path) {
+Result<Volume> loadFile(const std::filesystem::path& path, const LoadOptions& options) {
     const std::string name = lowerCase(path.filename().string());
     const auto format = std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& entry) {
         return name.ends_with(entry.ending);
     });
     if (format != kFormats.end()) {
-        return format->read(path);
+        return format->read(path, options);
     }
     if (holdDicom({path})) {
-        return readDicomFile(path);
+        return readDicomFile(path, options);
     }
     if (isImage(path)) {
-        return readImagePages(path);
+        return readImagePages(path, options);
     }
     return fail(
         ErrorCode::UnsupportedType,
@@ -95,10 +95,15 @@ Result<Volume> loadVolume(const std::filesystem::path& path, const LoadOptions& 
     }
     const std::filesystem::path clean =
         path.has_filename() ? path : path.parent_path(); // "folder/" has no name to give
-    Result<Volume> volume = options.raw ? readRaw(clean, *options.raw)
-                            : std::filesystem::is_directory(clean)
-                                ? loadFolder(clean, options.series)
-                                : loadFile(clean);
+    Result<Volume> volume = options.raw ? readRaw(clean, *options.raw, options.rawSkipBytes)
+                            : std::filesystem::is_directory(clean) ? loadFolder(clean, options)
+                                                                   : loadFile(clean, options);
+    if (volume && options.spacingMm) {
+        volume->geometry.spacingMm = *options.spacingMm;
+    }
+    if (volume && !options.unit.empty()) {
+        volume->unit = options.unit;
+    }
     return std::move(volume).and_then(validated).map_error([&](Error error) {
         const bool named = error.detail.find(clean.string()) != std::string::npos;
         return named ? error

@@ -4,13 +4,14 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/volume/volume.h"
 
 namespace slabcast {
 
-/// How the bytes of a file without a header lie: x fastest, nothing before the first voxel.
+/// How the bytes of a file without a header lie: x fastest.
 struct RawLayout {
     glm::i64vec3 dims{0};
     VoxelType type = VoxelType::U8;
@@ -23,10 +24,29 @@ struct RawLayout {
 /// SizeOverflow.
 /// Tested by: io_raw_test.cpp
 Result<RawLayout> parseRawLayout(std::string_view text);
+/// What parseRawLayout() takes.
+std::string textOf(const RawLayout& layout);
 
+/// A property by which images differ, as {"EchoTime", "20"}: DICOM's keyword or a format's word.
+struct Selection {
+    std::string key;
+    std::string value;
+};
+
+/// From "KEY=VALUE", one or several with commas between. Fails: InvalidArgument. Tested by:
+/// io_raw_test.cpp
+Result<std::vector<Selection>> parseSelections(std::string_view text);
+
+/// Which of several volumes to take, and what to assume where the file is silent or wrong.
 struct LoadOptions {
-    std::string series;           // the UID to take where a folder holds several DICOM series
-    std::optional<RawLayout> raw; // set: the file is plain voxels, whatever its name ends in
+    std::string series;            // the UID to take where a folder holds several DICOM series
+    std::vector<Selection> select; // of several images at each place, those where all of these hold
+    std::optional<int> time;       // of several volumes over time, the one to take, from 0
+    bool resampleUneven = false;   // slices at uneven distances: brought to even ones, else refused
+    std::optional<RawLayout> raw;  // set: the file is plain voxels, whatever its name ends in
+    std::int64_t rawSkipBytes = 0; // of a file of plain voxels, before the first one
+    std::optional<glm::dvec3> spacingMm; // in place of the file's
+    std::string unit;                    // of the values, in place of the file's; empty: that
 };
 
 /// Reads NRRD (.nrrd, .nhdr), NIfTI-1 (.nii, .nii.gz), MetaImage (.mha, .mhd), DICOM (a folder,
@@ -34,11 +54,12 @@ struct LoadOptions {
 /// their names), and plain voxels. Voxels keep the file's type; only where the file states a
 /// rescaling does the reader apply it, which may change the type. Geometry is in LPS; negative
 /// spacings are folded into the direction. Images without units take the resolution tags in x
-/// and y, and 1 mm in depth. Peak memory: twice the voxels.
-/// Fails: FileNotFound, FileUnreadable, FileTruncated, UnsupportedType, UnsupportedDims,
-/// EmptyVolume, InvalidGeometry, SizeOverflow, EmptyFolder, AmbiguousSeries, InvalidArgument
-/// (no such series; more raw bytes than the layout asks for). Tested by: io_nrrd_test.cpp,
-/// io_nifti_test.cpp, io_meta_test.cpp, io_dicom_test.cpp, io_images_test.cpp, io_raw_test.cpp
+/// and y, and 1 mm in depth. What was assumed or left out is in Volume::notes. Peak memory: twice
+/// the voxels. Fails: FileNotFound, FileUnreadable, FileTruncated, UnsupportedType,
+/// UnsupportedDims, EmptyVolume, InvalidGeometry, SizeOverflow, EmptyFolder, AmbiguousSeries,
+/// InvalidArgument (no such series; more raw bytes than the layout asks for). Tested by:
+/// io_nrrd_test.cpp, io_nifti_test.cpp, io_meta_test.cpp, io_dicom_test.cpp, io_images_test.cpp,
+/// io_raw_test.cpp
 Result<Volume> loadVolume(const std::filesystem::path& path, const LoadOptions& options = {});
 
 } // namespace slabcast

@@ -256,7 +256,7 @@ Result<Volume> readSlices(const std::vector<Slice>& slices, const VolumeGeometry
 
 } // namespace
 
-Result<Volume> readDicomFile(const std::filesystem::path& path) {
+Result<Volume> readDicomFile(const std::filesystem::path& path, const LoadOptions&) {
     const auto io = itk::GDCMImageIO::New();
     Result<Volume> volume = openDicom(path, *io);
     if (!volume) {
@@ -273,13 +273,13 @@ Result<Volume> readDicomFile(const std::filesystem::path& path) {
     return read ? std::move(volume) : tl::unexpected(read.error());
 }
 
-Result<Volume> readDicomSeries(const std::filesystem::path& folder, const std::string& series) {
-    const Result<std::vector<std::string>> files = filesOfSeries(folder, series);
+Result<Volume> readDicomSeries(const std::filesystem::path& folder, const LoadOptions& options) {
+    const Result<std::vector<std::string>> files = filesOfSeries(folder, options.series);
     if (!files) {
         return tl::unexpected(files.error());
     }
     if (files->size() == 1) {
-        return readDicomFile(files->front());
+        return readDicomFile(files->front(), options);
     }
     const Result<std::vector<Slice>> slices = openSlices(*files);
     if (!slices) {

@@ -176,7 +176,7 @@ bool isImage(const std::filesystem::path& path) {
     return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 
-Result<Volume> readImagePages(const std::filesystem::path& path) {
+Result<Volume> readImagePages(const std::filesystem::path& path, const LoadOptions&) {
     const Result<int> count =
         PagedFile::open(path).map([](PagedFile file) { return file.countPages(); });
     if (!count) {
@@ -193,9 +193,10 @@ Result<Volume> readImagePages(const std::filesystem::path& path) {
 }
 
 Result<Volume> readImageStack(const std::filesystem::path& folder,
-                              std::vector<std::filesystem::path> files) {
+                              std::vector<std::filesystem::path> files,
+                              const LoadOptions& options) {
     if (files.size() == 1) {
-        return readImagePages(files.front());
+        return readImagePages(files.front(), options);
     }
     std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) {
         return naturallyBefore(a.filename().string(), b.filename().string());

@@ -89,7 +89,29 @@ Result<RawLayout> parseRawLayout(std::string_view text) {
     return RawLayout{*dims, *type, *spacing, order == "be"};
 }
 
-Result<Volume> readRaw(const std::filesystem::path& path, const RawLayout& layout) {
+std::string textOf(const RawLayout& layout) {
+    const glm::dvec3 spacing = layout.spacingMm;
+    return fmt::format("{}x{}x{},{},{}x{}x{}{}", layout.dims.x, layout.dims.y, layout.dims.z,
+                       name(layout.type), spacing.x, spacing.y, spacing.z,
+                       layout.bigEndian ? ",be" : "");
+}
+
+Result<std::vector<Selection>> parseSelections(std::string_view text) {
+    std::vector<Selection> selections;
+    for (const std::string_view part : split(text, ',')) {
+        const std::size_t equals = part.find('=');
+        const std::string_view key = trimmed(part.substr(0, equals));
+        if (equals == std::string_view::npos || key.empty()) {
+            return fail(ErrorCode::InvalidArgument,
+                        fmt::format("'{}' is not KEY=VALUE, as EchoTime=20", text));
+        }
+        selections.push_back({std::string(key), std::string(trimmed(part.substr(equals + 1)))});
+    }
+    return selections;
+}
+
+Result<Volume> readRaw(const std::filesystem::path& path, const RawLayout& layout,
+                       std::int64_t skipBytes) {
     const Result<std::int64_t> bytes = checkedByteCount(layout.dims, layout.type);
     if (!bytes) {
         return tl::unexpected(bytes.error());
@@ -101,12 +123,20 @@ Result<Volume> readRaw(const std::filesystem::path& path, const RawLayout& layou
                     fmt::format("{}: {}; check that --raw is given with a file", path.string(),
                                 error.message()));
     }
-    if (fileSize != *bytes) {
-        return fail(fileSize < *bytes ? ErrorCode::FileTruncated : ErrorCode::InvalidArgument,
-                    fmt::format("{}: has {} bytes, {} x {} x {} voxels of {} take {}; correct the "
-                                "layout given with --raw",
-                                path.string(), fileSize, layout.dims.x, layout.dims.y,
-                                layout.dims.z, name(layout.type), *bytes));
+    const std::int64_t left = fileSize - skipBytes - *bytes;
+    if (left != 0) {
+        const std::string asked = fmt::format(
+            "{}: has {} bytes, {} x {} x {} voxels of {} take {}{}", path.string(), fileSize,
+            layout.dims.x, layout.dims.y, layout.dims.z, name(layout.type), *bytes,
+            skipBytes > 0 ? fmt::format(" after {} that are skipped", skipBytes) : "");
+        return left < 0 ? fail(ErrorCode::FileTruncated,
+                               fmt::format("{}: {} are missing; correct the layout given with "
+                                           "--raw",
+                                           asked, -left))
+                        : fail(ErrorCode::InvalidArgument,
+                               fmt::format("{}: {} are left over; if they are a header, skip it "
+                                           "with --skip-bytes {}, else correct the layout",
+                                           asked, left, skipBytes + left));
     }
     Volume volume;
     volume.name = path.filename().string();
@@ -115,6 +145,7 @@ Result<Volume> readRaw(const std::filesystem::path& path, const RawLayout& layou
     volume.geometry.spacingMm = layout.spacingMm;
     volume.voxels.resize(*bytes);
     std::ifstream file(path, std::ios::binary);
+    file.seekg(skipBytes);
     if (!file.read(reinterpret_cast<char*>(volume.voxels.data()), *bytes)) {
         return fail(ErrorCode::FileUnreadable,
                     fmt::format("{}: cannot be read; check its permissions", path.string()));

@@ -44,15 +44,15 @@ Result<Volume> readChecked(const std::filesystem::path& path,
 
 } // namespace
 
-Result<Volume> readNrrd(const std::filesystem::path& path) {
+Result<Volume> readNrrd(const std::filesystem::path& path, const LoadOptions&) {
     return readChecked<itk::NrrdImageIO>(path, readNrrdHeader);
 }
 
-Result<Volume> readNifti(const std::filesystem::path& path) {
+Result<Volume> readNifti(const std::filesystem::path& path, const LoadOptions&) {
     return readChecked<itk::NiftiImageIO>(path, readNiftiHeader);
 }
 
-Result<Volume> readMetaImage(const std::filesystem::path& path) {
+Result<Volume> readMetaImage(const std::filesystem::path& path, const LoadOptions&) {
     return readChecked<itk::MetaImageIO>(path, readMetaHeader);
 }
 

@@ -12,24 +12,25 @@ namespace slabcast {
 
 // One reader per family of formats; loadVolume() chooses and validates. None of them throws.
 
-Result<Volume> readNrrd(const std::filesystem::path& path);
-Result<Volume> readNifti(const std::filesystem::path& path);
-Result<Volume> readMetaImage(const std::filesystem::path& path);
+Result<Volume> readNrrd(const std::filesystem::path& path, const LoadOptions& options);
+Result<Volume> readNifti(const std::filesystem::path& path, const LoadOptions& options);
+Result<Volume> readMetaImage(const std::filesystem::path& path, const LoadOptions& options);
 
-Result<Volume> readDicomFile(const std::filesystem::path& path);
-/// `files`: those of the folder; an empty `series` asks for the only one.
-Result<Volume> readDicomSeries(const std::filesystem::path& folder, const std::string& series);
+Result<Volume> readDicomFile(const std::filesystem::path& path, const LoadOptions& options);
+/// Without `options.series`: the only one.
+Result<Volume> readDicomSeries(const std::filesystem::path& folder, const LoadOptions& options);
 /// Whether any of the files carries DICOM's mark behind its preamble.
 bool holdDicom(const std::vector<std::filesystem::path>& files);
 
 /// All pages of one file.
-Result<Volume> readImagePages(const std::filesystem::path& path);
+Result<Volume> readImagePages(const std::filesystem::path& path, const LoadOptions& options);
 /// One slice per file, in natural order of the names; a single file gives its pages.
 Result<Volume> readImageStack(const std::filesystem::path& folder,
-                              std::vector<std::filesystem::path> files);
+                              std::vector<std::filesystem::path> files, const LoadOptions& options);
 /// By the end of the name.
 bool isImage(const std::filesystem::path& path);
 
-Result<Volume> readRaw(const std::filesystem::path& path, const RawLayout& layout);
+Result<Volume> readRaw(const std::filesystem::path& path, const RawLayout& layout,
+                       std::int64_t skipBytes);
 
 } // namespace slabcast

@@ -44,7 +44,9 @@ TEST_F(RawTest, wrongLayoutsAreNamed) {
 }
 
 LoadOptions raw(std::string_view layout) {
-    return {.series = "", .raw = *parseRawLayout(layout)};
+    LoadOptions options;
+    options.raw = *parseRawLayout(layout);
+    return options;
 }
 
 TEST_F(RawTest, bothByteOrdersAreRead) {
