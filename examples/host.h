@@ -30,11 +30,11 @@ T orExit(slabcast::Result<T> result) {
 #define HOST_GL_FUNCTIONS(X)                                                                       \
     X(GenTextures, GENTEXTURES)                                                                    \
     X(BindTexture, BINDTEXTURE)                                                                    \
-    X(TexStorage2D, TEXSTORAGE2D) X(TexStorage3D, TEXSTORAGE3D)                                    \
-        X(GenFramebuffers, GENFRAMEBUFFERS) X(BindFramebuffer, BINDFRAMEBUFFER)                    \
-            X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D)                                          \
-                X(FramebufferTextureLayer, FRAMEBUFFERTEXTURELAYER) X(ClearColor, CLEARCOLOR)      \
-                    X(Clear, CLEAR) X(ReadPixels, READPIXELS)
+    X(TexStorage2D, TEXSTORAGE2D)                                                                  \
+    X(TexStorage3D, TEXSTORAGE3D) X(GenFramebuffers, GENFRAMEBUFFERS)                              \
+        X(BindFramebuffer, BINDFRAMEBUFFER) X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D)          \
+            X(FramebufferTextureLayer, FRAMEBUFFERTEXTURELAYER) X(ClearColor, CLEARCOLOR)          \
+                X(Clear, CLEAR) X(ReadPixels, READPIXELS)
 
 /// A context without a window, current, and GL's functions as this application calls them.
 struct Host {
@@ -77,10 +77,11 @@ inline slabcast::Volume ballVolume(int edge) {
     volume.name = "ball";
     volume.type = slabcast::VoxelType::U8;
     volume.geometry.dims = glm::ivec3(edge);
+    volume.voxels = slabcast::VoxelBytes(std::size_t(edge) * edge * edge);
     for (int i = 0; i < edge * edge * edge; ++i) {
         const glm::dvec3 voxel(i % edge, i / edge % edge, i / edge / edge);
         const double radius = glm::length(voxel + 0.5 - edge / 2.0) / (edge / 2.0);
-        volume.voxels.push_back(std::byte(radius < 1.0 ? int(255.0 * (1.0 - radius)) : 0));
+        volume.voxels[i] = std::byte(radius < 1.0 ? int(255.0 * (1.0 - radius)) : 0);
     }
     return volume;
 }

@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 
 #include "core/base/error.h"
+#include "core/volume/voxel_bytes.h"
 
 namespace slabcast {
 
@@ -54,7 +55,7 @@ struct Volume {
     double rescaleIntercept = 0.0;
     std::int64_t nonFiniteVoxels =
         0; // NaN and infinities found on load, since replaced by the lowest finite data value
-    std::vector<std::byte> voxels;
+    VoxelBytes voxels;
     std::vector<std::string> notes; // what its reader assumed or left out: a line each
 
     /// Data value of one voxel. For tests and small loops: bulk code dispatches on the type once.

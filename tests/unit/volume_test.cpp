@@ -131,7 +131,7 @@ TEST(Validated, RefusesWhatIsNoVolume) {
     bad.geometry.dims.y = 0;
     EXPECT_EQ(codeOf(bad), ErrorCode::EmptyVolume);
     bad = good;
-    bad.voxels.pop_back();
+    bad.voxels.resize(bad.voxels.size() - 1);
     EXPECT_EQ(codeOf(bad), ErrorCode::FileTruncated);
     bad = good;
     bad.rescaleSlope = 0.0;
@@ -367,6 +367,32 @@ TEST(Downsample, KeepsExtremesOfConstantVolumes) {
 TEST(Downsample, RefusesFactorsBelowOne) {
     const Volume volume = volumeOf<std::uint8_t>({1, 1, 1}, {1});
     EXPECT_EQ(downsample(volume, {1, 0, 1}).error().code, ErrorCode::InvalidArgument);
+}
+
+TEST(VoxelBytes, AreTheirOwnOrSomebodyElses) {
+    std::vector<std::byte> theirs = {std::byte{1}, std::byte{2}, std::byte{3}};
+    int released = 0;
+    {
+        VoxelBytes adopted =
+            VoxelBytes::adopted(theirs.data(), theirs.size(), [&](std::byte* bytes) {
+                EXPECT_EQ(bytes, theirs.data());
+                ++released;
+            });
+        const VoxelBytes copy = adopted;
+        EXPECT_NE(copy.data(), theirs.data());
+        EXPECT_EQ(copy, adopted);
+        VoxelBytes moved = std::move(adopted);
+        EXPECT_EQ(moved.data(), theirs.data());
+        moved.resize(2);
+        EXPECT_EQ(moved.data(), theirs.data()); // fewer keep their memory
+        EXPECT_EQ(released, 0);
+        moved.resize(4);
+        EXPECT_EQ(released, 1);
+        EXPECT_EQ(moved, (VoxelBytes{std::byte{1}, std::byte{2}, std::byte{0}, std::byte{0}}));
+    }
+    EXPECT_EQ(released, 1);
+    EXPECT_TRUE(VoxelBytes().empty());
+    EXPECT_EQ(VoxelBytes(3), (VoxelBytes{std::byte{0}, std::byte{0}, std::byte{0}}));
 }
 
 } // namespace
