@@ -22,7 +22,9 @@ build libfmt-dev             text formatting
 build zlib1g-dev             reads the headers of compressed volumes
 build libinsighttoolkit5-dev reads volumes: DICOM, NIfTI, NRRD, MetaImage
 build libpng-dev             writes PNG
-build libopenimageio-dev     reads image stacks, writes EXR
+build libseccomp-dev         holds the program that reads files to reading
+build libtiff-dev            reads TIFF
+build libopenimageio-dev     reads other images, writes EXR
 build python3-matplotlib     plots of the reports
 test  libgtest-dev           unit tests
 test  librapidcheck-dev      property tests

@@ -28,6 +28,7 @@ enum class ErrorCode : std::uint8_t {
     VolumeTooLarge, // over the device's 3D texture limit or the memory budget
     ShaderCompile,
     Internal,
+    Cancelled, // because the caller asked for it
 };
 
 /// One line: the cause, then the remedy. Written to be shown to a person as it is.

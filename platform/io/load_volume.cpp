@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <fstream>
+#include <new>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "platform/io/apart/read_apart.h"
 #include "platform/io/parse_text.h"
 #include "platform/io/readers.h"
 
@@ -87,15 +90,10 @@ Result<void> checkOpens(const std::filesystem::path& path) {
     return {};
 }
 
-} // namespace
-
-Result<Volume> loadVolume(const std::filesystem::path& path, const LoadOptions& options) try {
-    if (const Result<void> opens = checkOpens(path); !opens) {
-        return tl::unexpected(opens.error());
-    }
+Result<Volume> readHere(const std::filesystem::path& path, const LoadOptions& options) try {
     const std::filesystem::path clean =
         path.has_filename() ? path : path.parent_path(); // "folder/" has no name to give
-    Result<Volume> volume = options.raw ? readRaw(clean, *options.raw, options.rawSkipBytes)
+    Result<Volume> volume = options.raw                            ? readRaw(clean, options)
                             : std::filesystem::is_directory(clean) ? loadFolder(clean, options)
                                                                    : loadFile(clean, options);
     if (volume && options.spacingMm) {
@@ -109,10 +107,44 @@ Result<Volume> loadVolume(const std::filesystem::path& path, const LoadOptions& 
         return named ? error
                      : Error{error.code, fmt::format("{}: {}", path.string(), error.detail)};
     });
-} catch (const std::exception& exception) { // out of memory; the readers catch their libraries'
+} catch (const std::bad_alloc&) {
     return fail(ErrorCode::FileUnreadable,
-                fmt::format("{}: {}; close other programs or take a smaller volume", path.string(),
-                            exception.what()));
+                fmt::format("{}: there is not enough memory for it; close other programs or take a "
+                            "smaller volume",
+                            path.string()));
+} catch (const std::exception& exception) { // the readers catch their libraries'
+    return fail(ErrorCode::FileUnreadable,
+                fmt::format("{}: {}; fetch it again, or convert it to another format",
+                            path.string(), oneLine(exception.what())));
+}
+
+/// Debuggers want everything in one process, whatever the program asks for.
+bool readsHere(const LoadOptions& options) {
+    const char* where = std::getenv("SLABCAST_READ_IN");
+    return options.process == ReadIn::ThisProcess ||
+           (where != nullptr && std::string_view(where) == "this-process");
+}
+
+} // namespace
+
+Result<void> going(const LoadOptions& options, const std::filesystem::path& file, double done) {
+    if (options.progress) {
+        options.progress({file, done});
+    }
+    if (options.cancel != nullptr && options.cancel->load()) {
+        return fail(ErrorCode::Cancelled, fmt::format("{}: cancelled", file.string()));
+    }
+    return {};
+}
+
+VoxelBytes makeVoxels(const LoadOptions& options, std::size_t size) {
+    return options.allocate ? options.allocate(size) : VoxelBytes(size);
+}
+
+Result<Volume> loadVolume(const std::filesystem::path& path, const LoadOptions& options) {
+    return checkOpens(path).and_then([&]() {
+        return readsHere(options) ? readHere(path, options) : apart::readApart(path, options);
+    });
 }
 
 } // namespace slabcast

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <atomic>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -37,7 +39,25 @@ struct Selection {
 /// io_raw_test.cpp
 Result<std::vector<Selection>> parseSelections(std::string_view text);
 
-/// Which of several volumes to take, and what to assume where the file is silent or wrong.
+/// How far reading has come.
+struct LoadProgress {
+    std::filesystem::path file; // of the folder, where one is read
+    double done = 0.0;          // of all that is read, from 0 to 1
+};
+
+/// What a reader in a process of its own may take before it is stopped. Plain numbers.
+struct LoadLimits {
+    std::int64_t memoryBytes = 0; // 0: as much as the machine has
+    double stuckSeconds = 60.0;   // of computing without progress
+};
+
+enum class ReadIn : std::uint8_t {
+    OwnProcess, // a file that breaks its reader breaks nothing else
+    ThisProcess // for systems without processes of one's own (Android), and for debuggers
+};
+
+/// Which of several volumes to take, what to assume where the file is silent or wrong, and how to
+/// read it.
 struct LoadOptions {
     std::string series;            // the UID to take where a folder holds several DICOM series
     std::vector<Selection> select; // of several images at each place, those where all of these hold
@@ -47,6 +67,12 @@ struct LoadOptions {
     std::int64_t rawSkipBytes = 0; // of a file of plain voxels, before the first one
     std::optional<glm::dvec3> spacingMm; // in place of the file's
     std::string unit;                    // of the values, in place of the file's; empty: that
+
+    ReadIn process = ReadIn::OwnProcess;
+    LoadLimits limits;                                 // in a process of its own
+    std::function<void(const LoadProgress&)> progress; // now and then, by the calling thread
+    const std::atomic<bool>* cancel = nullptr;         // set: stop soon, with Cancelled
+    std::function<VoxelBytes(std::size_t)> allocate;   // what holds the voxels; empty: VoxelBytes
 };
 
 /// Reads NRRD (.nrrd, .nhdr), NIfTI-1 (.nii, .nii.gz), MetaImage (.mha, .mhd), DICOM (a folder,

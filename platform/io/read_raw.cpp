@@ -13,6 +13,7 @@ namespace slabcast {
 
 namespace {
 
+constexpr std::int64_t kReadAtOnce = 16 << 20; // bytes
 constexpr const char* kExample =
     "expected DIMS,TYPE,SPACING[,le|be], as 256x256x128,uint16,1x1x1.5";
 
@@ -20,8 +21,8 @@ tl::unexpected<Error> wrong(ErrorCode code, std::string_view text, std::string_v
     return fail(code, fmt::format("raw layout '{}': {}; {}", text, why, kExample));
 }
 
-void swapBytes(std::vector<std::byte>& voxels, std::size_t size) {
-    for (auto voxel = voxels.begin(); voxel != voxels.end(); voxel += size) {
+void swapBytes(VoxelBytes& voxels, std::size_t size) {
+    for (std::byte* voxel = voxels.begin(); voxel != voxels.end(); voxel += size) {
         std::reverse(voxel, voxel + size);
     }
 }
@@ -110,8 +111,9 @@ Result<std::vector<Selection>> parseSelections(std::string_view text) {
     return selections;
 }
 
-Result<Volume> readRaw(const std::filesystem::path& path, const RawLayout& layout,
-                       std::int64_t skipBytes) {
+Result<Volume> readRaw(const std::filesystem::path& path, const LoadOptions& options) {
+    const RawLayout& layout = *options.raw;
+    const std::int64_t skipBytes = options.rawSkipBytes;
     const Result<std::int64_t> bytes = checkedByteCount(layout.dims, layout.type);
     if (!bytes) {
         return tl::unexpected(bytes.error());
@@ -143,12 +145,18 @@ Result<Volume> readRaw(const std::filesystem::path& path, const RawLayout& layou
     volume.type = layout.type;
     volume.geometry.dims = layout.dims;
     volume.geometry.spacingMm = layout.spacingMm;
-    volume.voxels.resize(*bytes);
+    volume.voxels = makeVoxels(options, static_cast<std::size_t>(*bytes));
     std::ifstream file(path, std::ios::binary);
-    file.seekg(skipBytes);
-    if (!file.read(reinterpret_cast<char*>(volume.voxels.data()), *bytes)) {
-        return fail(ErrorCode::FileUnreadable,
-                    fmt::format("{}: cannot be read; check its permissions", path.string()));
+    file.seekg(options.rawSkipBytes);
+    for (std::int64_t done = 0; done < *bytes; done += kReadAtOnce) {
+        if (const Result<void> on = going(options, path, double(done) / double(*bytes)); !on) {
+            return tl::unexpected(on.error());
+        }
+        if (!file.read(reinterpret_cast<char*>(volume.voxels.data() + done),
+                       std::min(kReadAtOnce, *bytes - done))) {
+            return fail(ErrorCode::FileUnreadable,
+                        fmt::format("{}: cannot be read; check its permissions", path.string()));
+        }
     }
     if (layout.bigEndian != (std::endian::native == std::endian::big)) {
         swapBytes(volume.voxels, bytesPerVoxel(layout.type));

@@ -12,6 +12,12 @@ namespace slabcast {
 
 // One reader per family of formats; loadVolume() chooses and validates. None of them throws.
 
+/// Says that `file` is read now, and how much of all is done; Cancelled where it is to stop.
+/// Readers call it for each file, page or few MiB.
+Result<void> going(const LoadOptions& options, const std::filesystem::path& file, double done);
+/// What a volume's voxels go into.
+VoxelBytes makeVoxels(const LoadOptions& options, std::size_t size);
+
 Result<Volume> readNrrd(const std::filesystem::path& path, const LoadOptions& options);
 Result<Volume> readNifti(const std::filesystem::path& path, const LoadOptions& options);
 Result<Volume> readMetaImage(const std::filesystem::path& path, const LoadOptions& options);
@@ -30,7 +36,7 @@ Result<Volume> readImageStack(const std::filesystem::path& folder,
 /// By the end of the name.
 bool isImage(const std::filesystem::path& path);
 
-Result<Volume> readRaw(const std::filesystem::path& path, const RawLayout& layout,
-                       std::int64_t skipBytes);
+/// Plain voxels, as `options.raw` has them.
+Result<Volume> readRaw(const std::filesystem::path& path, const LoadOptions& options);
 
 } // namespace slabcast
