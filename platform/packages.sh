@@ -32,6 +32,7 @@ test  glslang-tools          checks every shader variant against the specificati
 demo  invesalius-examples    the skull: a CT as DICOM
 demo  mricron-data           a head: MR as NIfTI
 compilers clang-14           what Android's NDK compiles with
+compilers libclang-rt-14-dev its fuzzer and sanitizers
 compilers libc++-14-dev      its standard library
 compilers libc++abi-14-dev   what that builds upon
 compilers emscripten         the compiler for browsers
