@@ -380,8 +380,8 @@ SceneFacts Scene::facts() const {
 
 double Scene::defaultGradientFloorPerMm() const {
     constexpr double kShareOfRangePerVoxel = 0.005;
-    return kShareOfRangePerVoxel * (state_->statistics.max - state_->statistics.min) /
-           state_->geometry.smallestVoxelEdgeMm();
+    const ValueRange range = state_->statistics.shown();
+    return kShareOfRangePerVoxel * (range.max - range.min) / state_->geometry.smallestVoxelEdgeMm();
 }
 
 } // namespace slabcast

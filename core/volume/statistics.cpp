@@ -1,8 +1,12 @@
 #include "core/volume/statistics.h"
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -26,7 +30,24 @@ struct Extent {
 struct Spread {
     double squares = 0.0;
     std::array<std::int64_t, 256> histogram{};
+    double aboveMin = 0.0; // the least value but for the minimum; the maximum where there is none
+    double belowMax = 0.0;
 };
+
+/// Of the bulk, in stored voxels.
+struct Cut {
+    double low = 0.0;
+    double high = 0.0;
+};
+
+constexpr double kFarInSpans = 4.0;           // an end value that is so far off stands alone
+constexpr double kShareOfOutliers = 0.0005;   // at either end
+constexpr std::int64_t kFewOutliers = 8;      // at either end of a small volume
+constexpr std::int64_t kVoxelsPerFew = 512;   // but no more than one of so many
+constexpr double kNarrow = 1.0 / 8.0;         // of the range: what lies within is hardly seen
+constexpr std::int64_t kFewestDistinct = 8;   // values: fewer are labels, each of which counts
+constexpr std::int64_t kVoxelsPerFill = 1000; // one of so many is no stray voxel any more
+constexpr std::size_t kPrefixes = 1 << 16;
 
 /// One partial result per run of voxels, in their order: sums do not depend on the threads.
 template <class Partial, class T, class Body>
@@ -59,10 +80,23 @@ Extent extentOf(std::span<const T> voxels) {
 }
 
 template <class T>
-Spread spreadOf(std::span<const T> voxels, double mean, double origin, double binsPerStep) {
+Spread spreadOf(std::span<const T> voxels, const Extent& extent, double mean, double origin,
+                double binsPerStep) {
+    const T min = static_cast<T>(extent.min);
+    const T max = static_cast<T>(extent.max);
     Spread spread;
+    spread.aboveMin = extent.max;
+    spread.belowMax = extent.min;
     for (const Spread& part : reduceRuns<Spread>(voxels, [=](std::span<const T> run) {
              Spread result;
+             T aboveMin = max;
+             T belowMax = min;
+             for (const T voxel : run) {
+                 aboveMin = std::min(aboveMin, voxel > min ? voxel : max);
+                 belowMax = std::max(belowMax, voxel < max ? voxel : min);
+             }
+             result.aboveMin = static_cast<double>(aboveMin);
+             result.belowMax = static_cast<double>(belowMax);
              for (const T voxel : run) {
                  const auto value = static_cast<double>(voxel);
                  const double bin = std::clamp((value - origin) * binsPerStep, 0.0, 255.0);
@@ -72,10 +106,172 @@ Spread spreadOf(std::span<const T> voxels, double mean, double origin, double bi
              return result;
          })) {
         spread.squares += part.squares;
+        spread.aboveMin = std::min(spread.aboveMin, part.aboveMin);
+        spread.belowMax = std::max(spread.belowMax, part.belowMax);
         std::transform(spread.histogram.begin(), spread.histogram.end(), part.histogram.begin(),
                        spread.histogram.begin(), std::plus<>());
     }
     return spread;
+}
+
+/// Without an end value that is far from all others; one that is farther still may hide another.
+Cut withoutFarEnds(const Extent& extent, const Spread& spread) {
+    Cut cut{extent.min, extent.max};
+    for (int round = 0; round < 2; ++round) {
+        const double below = spread.belowMax - cut.low;
+        if (below > 0.0 && extent.max - spread.belowMax > kFarInSpans * below) {
+            cut.high = spread.belowMax;
+        }
+        const double above = cut.high - spread.aboveMin;
+        if (above > 0.0 && spread.aboveMin - extent.min > kFarInSpans * above) {
+            cut.low = spread.aboveMin;
+        }
+    }
+    return cut;
+}
+
+std::int64_t mostOutliers(std::int64_t count) {
+    const auto share = static_cast<std::int64_t>(kShareOfOutliers * static_cast<double>(count));
+    return std::max(share, std::min(kFewOutliers, count / kVoxelsPerFew));
+}
+
+/// First and last of the places that hold all but `outliers` of either end.
+template <class Counts>
+std::pair<std::size_t, std::size_t> inner(const Counts& counts, std::int64_t outliers) {
+    std::size_t first = 0;
+    std::size_t last = counts.size() - 1;
+    for (std::int64_t below = counts[first]; first < last && below <= outliers;) {
+        below += counts[++first];
+    }
+    for (std::int64_t above = counts[last]; last > first && above <= outliers;) {
+        above += counts[--last];
+    }
+    return {first, last};
+}
+
+/// Of the order of float32: sign, exponent and 7 bits more.
+template <class T>
+std::size_t prefixOf(T voxel) {
+    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(voxel));
+    return (bits >> 31 != 0 ? ~bits : bits | 0x80000000U) >> 16;
+}
+
+/// The values of a cut without the outliers of either end, as a cut that ends at values.
+template <class T>
+Cut withoutOutliers(std::span<const T> voxels, Cut cut, std::int64_t outliers) {
+    const auto within = [cut](T voxel) {
+        const auto value = static_cast<double>(voxel);
+        return value >= cut.low && value <= cut.high;
+    };
+    std::vector<std::atomic<std::int64_t>> counts(kPrefixes);
+    const auto count = static_cast<std::int64_t>(voxels.size());
+    parallelFor(count, 4 * kGrain, [&](std::int64_t begin, std::int64_t end) {
+        std::vector<std::int64_t> own(kPrefixes);
+        for (std::int64_t i = begin; i < end; ++i) {
+            const T voxel = voxels[static_cast<std::size_t>(i)];
+            own[prefixOf(voxel)] += within(voxel) ? 1 : 0;
+        }
+        for (std::size_t k = 0; k < kPrefixes; ++k) {
+            if (own[k] != 0) {
+                counts[k].fetch_add(own[k], std::memory_order_relaxed);
+            }
+        }
+    });
+    const auto [first, last] = inner(counts, outliers);
+    Cut inside{cut.high, cut.low};
+    for (const Cut& part :
+         reduceRuns<Cut>(voxels, [=, f = first, l = last](std::span<const T> run) {
+             Cut result{cut.high, cut.low};
+             for (const T voxel : run) {
+                 const std::size_t prefix = prefixOf(voxel);
+                 if (prefix >= f && prefix <= l && within(voxel)) {
+                     result.low = std::min(result.low, static_cast<double>(voxel));
+                     result.high = std::max(result.high, static_cast<double>(voxel));
+                 }
+             }
+             return result;
+         })) {
+        inside.low = std::min(inside.low, part.low);
+        inside.high = std::max(inside.high, part.high);
+    }
+    return inside;
+}
+
+/// What lies in, below and above a cut.
+struct Sides {
+    std::array<bool, 256> taken{}; // of even parts of the cut
+    std::int64_t below = 0;
+    std::int64_t above = 0;
+};
+
+template <class T>
+Sides sidesOf(std::span<const T> voxels, Cut cut) {
+    Sides sides;
+    for (const Sides& part : reduceRuns<Sides>(voxels, [=](std::span<const T> run) {
+             Sides result;
+             for (const T voxel : run) {
+                 const auto value = static_cast<double>(voxel);
+                 result.below += value < cut.low ? 1 : 0;
+                 result.above += value > cut.high ? 1 : 0;
+                 if (value >= cut.low && value <= cut.high) {
+                     const double place = 255.0 * ((value - cut.low) / (cut.high - cut.low));
+                     result.taken[static_cast<std::size_t>(place)] = true;
+                 }
+             }
+             return result;
+         })) {
+        sides.below += part.below;
+        sides.above += part.above;
+        for (std::size_t k = 0; k < sides.taken.size(); ++k) {
+            sides.taken[k] = sides.taken[k] || part.taken[k];
+        }
+    }
+    return sides;
+}
+
+/// In stored voxels.
+template <class T>
+std::optional<BulkOfValues> bulkOf(std::span<const T> voxels, const Extent& extent,
+                                   const Spread& spread) {
+    const auto count = static_cast<std::int64_t>(voxels.size());
+    const Cut near = withoutFarEnds(extent, spread);
+    const bool farBelow = near.low > extent.min;
+    const bool farAbove = near.high < extent.max;
+    const auto [first, last] = inner(spread.histogram, mostOutliers(count));
+    const bool wide = static_cast<double>(last) - static_cast<double>(first) - 1.0 >=
+                      kNarrow * static_cast<double>(spread.histogram.size());
+    if (!farBelow && !farAbove && (wide || extent.min == extent.max)) {
+        return std::nullopt;
+    }
+    const Cut inside = withoutOutliers(voxels, near, mostOutliers(count));
+    const double span = inside.high - inside.low;
+    const bool narrow = span > 0.0 && span < kNarrow * (near.high - near.low);
+    if (!farBelow && !farAbove && !narrow) {
+        return std::nullopt;
+    }
+    const Cut cut = narrow ? inside : near;
+    const Sides sides = sidesOf(voxels, cut);
+    if (std::count(sides.taken.begin(), sides.taken.end(), true) < kFewestDistinct) {
+        return std::nullopt;
+    }
+    const auto isFill = [count](std::int64_t outside) { return outside >= count / kVoxelsPerFill; };
+    return BulkOfValues{.range = {cut.low, cut.high},
+                        .voxelsBelow = sides.below,
+                        .voxelsAbove = sides.above,
+                        .fillBelow = farBelow && cut.low == near.low && isFill(sides.below),
+                        .fillAbove = farAbove && cut.high == near.high && isFill(sides.above)};
+}
+
+/// Rescaled.
+BulkOfValues inData(BulkOfValues bulk, double slope, double intercept) {
+    bulk.range.min = slope * bulk.range.min + intercept;
+    bulk.range.max = slope * bulk.range.max + intercept;
+    if (slope < 0.0) {
+        std::swap(bulk.range.min, bulk.range.max);
+        std::swap(bulk.voxelsBelow, bulk.voxelsAbove);
+        std::swap(bulk.fillBelow, bulk.fillAbove);
+    }
+    return bulk;
 }
 
 template <class T>
@@ -88,11 +284,16 @@ VolumeStatistics statisticsOf(std::span<const T> voxels, double slope, double in
     const double origin = slope > 0.0 ? extent.min : extent.max;
     const double bins = 256.0 / range; // infinite where the range is nothing, or next to nothing
     const double binsPerStep = std::isfinite(bins) ? std::copysign(bins, slope) : 0.0;
-    const Spread spread = spreadOf(voxels, mean, origin, binsPerStep);
+    const Spread spread = spreadOf(voxels, extent, mean, origin, binsPerStep);
     const double a = slope * extent.min + intercept;
     const double b = slope * extent.max + intercept;
-    return {std::min(a, b), std::max(a, b), slope * mean + intercept,
-            std::abs(slope) * std::sqrt(spread.squares / count), spread.histogram};
+    std::optional<BulkOfValues> bulk = bulkOf(voxels, extent, spread);
+    if (bulk) {
+        bulk = inData(*bulk, slope, intercept);
+    }
+    return {std::min(a, b),           std::max(a, b),
+            slope * mean + intercept, std::abs(slope) * std::sqrt(spread.squares / count),
+            spread.histogram,         bulk};
 }
 
 } // namespace
@@ -108,7 +309,8 @@ Modality likelyModality(const Volume& volume, const VolumeStatistics& statistics
     if (volume.modality != Modality::Unknown) {
         return volume.modality;
     }
-    const bool airToBeyondWater = statistics.min <= kAirHu && statistics.max > kWaterHu;
+    const ValueRange range = statistics.shown();
+    const bool airToBeyondWater = range.min <= kAirHu && range.max > kWaterHu;
     return airToBeyondWater ? Modality::Ct : Modality::Unknown;
 }
 
