@@ -1,28 +1,20 @@
-#include "platform/io/file_header.h"
-
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <zlib.h>
+
+#include "platform/io/file_header.h"
 
 namespace slabcast {
 
 namespace {
 
 constexpr std::size_t kSpatialAxes = 3;
-constexpr std::int64_t kUnlimited = std::numeric_limits<std::int64_t>::max();
-constexpr std::int64_t kMaxDeflateRatio =
-    1032; // RFC 1951 allows no more, so longer data cannot be inside
 
 Result<void> checkSizes(const std::string& path, const std::vector<std::int64_t>& sizes) {
-    std::size_t rank = sizes.size();
-    while (rank > kSpatialAxes && sizes[rank - 1] == 1) {
-        --rank;
-    }
+    const std::size_t rank = sizes.size();
     if (rank != kSpatialAxes) {
         return fail(ErrorCode::UnsupportedDims,
                     fmt::format("{}: has {} dimensions ({}), and a volume has three; {}", path,
@@ -53,91 +45,106 @@ Result<void> checkSpacings(const std::string& path, const std::vector<double>& s
     return {};
 }
 
-/// Whether the stream holds `bytes` and ends as it should, checksum included. Goes through all
-/// of it.
-bool inflates(const FileHeader& header, std::int64_t bytes) {
-    constexpr int kZlibOrGzip = 15 + 32; // zlib.h, inflateInit2()
-    std::ifstream file(header.dataFile, std::ios::binary);
-    file.seekg(header.fileOffset);
-    std::vector<char> packed(1 << 18);
-    std::vector<char> plain(1 << 18);
-    std::int64_t packedLeft = header.deflatedBytes > 0 ? header.deflatedBytes : kUnlimited;
-    std::int64_t plainBytes = 0;
-    z_stream stream{};
-    int status = inflateInit2(&stream, kZlibOrGzip);
-    while (status == Z_OK || (status == Z_STREAM_END && plainBytes < bytes)) {
-        if (status == Z_STREAM_END) {
-            inflateReset(&stream); // gzip files may be strung together
-        }
-        if (stream.avail_in == 0) {
-            file.read(packed.data(), std::min<std::int64_t>(packed.size(), packedLeft));
-            packedLeft -= file.gcount();
-            stream.next_in = reinterpret_cast<Bytef*>(packed.data());
-            stream.avail_in = static_cast<uInt>(file.gcount());
-        }
-        stream.next_out = reinterpret_cast<Bytef*>(plain.data());
-        stream.avail_out = static_cast<uInt>(plain.size());
-        status = inflate(&stream, Z_NO_FLUSH); // without input: Z_BUF_ERROR, which ends the loop
-        plainBytes += static_cast<std::int64_t>(plain.size()) - stream.avail_out;
+Result<void> checkType(const std::string& path, const FileHeader& header) {
+    if (header.components != 1) {
+        return fail(ErrorCode::UnsupportedType,
+                    fmt::format("{}: has {} numbers per voxel ({}), and a volume has one; extract "
+                                "one channel or convert to grey",
+                                path, header.components, header.typeName));
     }
-    inflateEnd(&stream);
-    return status == Z_STREAM_END && plainBytes >= bytes;
-}
-
-Result<void> checkDataSize(const std::string& path, const FileHeader& header, std::int64_t bytes) {
-    if (header.dataFile.empty() || header.encoding == DataEncoding::Other) {
-        return {};
-    }
-    std::error_code error;
-    const auto fileSize =
-        static_cast<std::int64_t>(std::filesystem::file_size(header.dataFile, error));
-    if (error) {
-        return fail(ErrorCode::FileNotFound,
-                    fmt::format("{}: its voxels should be in {}, which is not there; keep both "
-                                "files in one folder",
-                                path, header.dataFile.string()));
-    }
-    const bool raw = header.encoding == DataEncoding::Raw;
-    if (raw ? fileSize - header.fileOffset < bytes : fileSize < bytes / kMaxDeflateRatio) {
-        return fail(
-            ErrorCode::FileTruncated,
-            fmt::format("{}: the header asks for {} bytes of voxels, {} has {} bytes in all; "
-                        "fetch the file again or correct the sizes in the header",
-                        path, bytes, header.dataFile.string(), fileSize));
-    }
-    if (!raw && !inflates(header, header.inflatedOffset + bytes)) {
-        return fail(
-            ErrorCode::FileTruncated,
-            fmt::format("{}: the compressed voxels in {} end early or are damaged; fetch the "
-                        "file again or correct the sizes in the header",
-                        path, header.dataFile.string()));
+    if (!header.type) {
+        return fail(ErrorCode::UnsupportedType,
+                    fmt::format("{}: voxels of type '{}' are not read; convert them to an integer "
+                                "of 8 to 32 bits, float or double",
+                                path, header.typeName));
     }
     return {};
 }
 
+Result<void> checkEncoding(const std::string& path, const FileHeader& header) {
+    const DataEncoding encoding = header.source.encoding;
+    const bool isText = encoding == DataEncoding::Text || encoding == DataEncoding::Hex;
+    if (encoding == DataEncoding::Other && header.encodingName.starts_with("bz")) {
+        return fail(ErrorCode::UnsupportedType,
+                    fmt::format("{}: bzip2 is not read; save it with gzip", path));
+    }
+    if (encoding == DataEncoding::Other) {
+        return fail(ErrorCode::FileUnreadable,
+                    fmt::format("{}: the encoding '{}' is not read; check the field 'encoding', or "
+                                "save it as raw or gzip",
+                                path, header.encodingName));
+    }
+    if (isText && header.source.byteSkip < 0) {
+        return fail(ErrorCode::FileUnreadable,
+                    fmt::format("{}: a 'byte skip' of {} is for raw voxels, and these are text; "
+                                "correct it in the header",
+                                path, header.source.byteSkip));
+    }
+    if (!header.bigEndian && encoding != DataEncoding::Text &&
+        bytesPerVoxel(header.type->type) > 1) {
+        return fail(ErrorCode::FileUnreadable,
+                    fmt::format("{}: the field 'endian' is missing or unknown, and voxels of {} "
+                                "bytes need it; add 'endian: little' or 'endian: big'",
+                                path, bytesPerVoxel(header.type->type)));
+    }
+    return {};
+}
+
+/// Of all times together.
+Result<void> checkFiles(const std::string& path, const FileHeader& header, std::int64_t bytes) {
+    if (header.times <= 0 || bytes > std::numeric_limits<std::int64_t>::max() / header.times) {
+        return fail(ErrorCode::SizeOverflow,
+                    fmt::format("{}: {} volumes over time, more than can be addressed; check the "
+                                "file's header",
+                                path, header.times));
+    }
+    return checkVoxelFiles(path, header.source, *header.type, bytes * header.times);
+}
+
 } // namespace
 
-Result<void> check(const std::filesystem::path& path, const FileHeader& header) {
+Placement placementOf(const glm::dmat3& stepsMm, glm::dvec3 originMm) {
+    Placement placement;
+    placement.originMm = originMm;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double length = glm::length(stepsMm[axis]);
+        placement.spacingMm[axis] = length;
+        placement.direction[axis] = stepsMm[axis] / length;
+    }
+    return placement;
+}
+
+void setAxes(FileHeader& header, const std::vector<std::int64_t>& sizes) {
+    header.sizes = sizes;
+    const auto isOne = [](std::int64_t size) { return size == 1; };
+    while (header.sizes.size() > kSpatialAxes && isOne(header.sizes.back())) {
+        header.sizes.pop_back();
+    }
+    if (header.sizes.size() == kSpatialAxes + 1 && header.sizes.back() > 0) {
+        header.times = header.sizes.back();
+        header.sizes.pop_back();
+    }
+}
+
+Result<std::int64_t> check(const std::filesystem::path& path, const FileHeader& header) {
     const std::string name = path.string();
-    if (header.components != 1) {
-        return fail(ErrorCode::UnsupportedType,
-                    fmt::format("{}: has {} numbers per voxel, and a volume has one; extract one "
-                                "channel or convert to grey",
-                                name, header.components));
-    }
-    if (!header.typeKnown) {
-        return fail(ErrorCode::UnsupportedType,
-                    fmt::format("{}: voxels of type '{}' are not read; convert them to an integer "
-                                "of 8 to 32 bits, float or double",
-                                name, header.typeName));
-    }
-    return checkSizes(name, header.sizes)
+    std::int64_t bytes = 0;
+    return checkType(name, header)
+        .and_then([&]() { return checkSizes(name, header.sizes); })
         .and_then([&]() { return checkSpacings(name, header.spacings); })
+        .and_then([&]() -> Result<void> {
+            return header.placement ? Result<void>() : tl::unexpected(header.placement.error());
+        })
         .and_then([&]() {
             return checkedByteCount({header.sizes[0], header.sizes[1], header.sizes[2]},
-                                    header.type);
+                                    header.type->type);
         })
-        .and_then([&](std::int64_t bytes) { return checkDataSize(name, header, bytes); })
+        .and_then([&](std::int64_t counted) {
+            bytes = counted;
+            return checkEncoding(name, header);
+        })
+        .and_then([&]() { return checkFiles(name, header, bytes); })
+        .map([&]() { return bytes; })
         .map_error([&](Error error) {
             const bool named = error.detail.starts_with(name);
             return named ? error : Error{error.code, fmt::format("{}: {}", name, error.detail)};

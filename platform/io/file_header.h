@@ -2,46 +2,75 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/volume/volume.h"
+#include "platform/io/load_volume.h"
+#include "platform/io/voxel_source.h"
 
 namespace slabcast {
 
-enum class DataEncoding : std::uint8_t { Raw, Deflate, Other };
-
-/// What a volume file says about itself, read before a format library can mend it: they turn
-/// spacings of zero into ones, allocate whatever the header asks for, and fill up what the file
-/// does not hold.
-struct FileHeader {
-    std::vector<std::int64_t> sizes; // of the spatial axes, as written
-    std::vector<double> spacings; // of the spatial axes, as written; empty where the file is silent
-    std::int64_t components = 1;  // numbers per voxel
-    std::string typeName;         // as written
-    VoxelType type = VoxelType::U8;
-    bool typeKnown = false;
-    DataEncoding encoding = DataEncoding::Other;
-    std::filesystem::path dataFile;  // empty: voxels lie in several files
-    std::int64_t fileOffset = 0;     // in it, of the first voxel or of the deflated stream
-    std::int64_t deflatedBytes = 0;  // 0: all that follows
-    std::int64_t inflatedOffset = 0; // of the first voxel within what is inflated
-    std::map<std::string, std::string> fields; // of the text formats, names in lower case
+/// Where the voxels lie, in LPS and mm; the spacing is positive.
+struct Placement {
+    glm::dvec3 spacingMm{1.0};
+    glm::dvec3 originMm{0.0};
+    glm::dmat3 direction{1.0};
 };
 
-/// Fails: FileUnreadable (not of this format), SizeOverflow (a number that fits no integer),
-/// and for NIfTI UnsupportedType (version 2). Cost: the header only.
+/// From the steps between voxels in LPS and mm; column k: along voxel axis k. A step of no length
+/// stays as it is, for the check of spacings to name.
+Placement placementOf(const glm::dmat3& stepsMm, glm::dvec3 originMm);
+
+/// What a volume file says about itself. Nothing is allocated, and no voxel read, before check()
+/// has been through it.
+struct FileHeader {
+    std::vector<std::int64_t> sizes; // of the axes of space, fastest first, as written
+    std::int64_t times = 1;          // as many volumes, one behind the other
+    std::vector<double>
+        spacings;                // of the axes of space, as written; empty where the file is silent
+    std::int64_t components = 1; // numbers per voxel
+    std::string typeName;        // in words
+    std::optional<StoredType> type;   // unless it is one that is not read
+    std::string encodingName;         // as written
+    std::optional<bool> bigEndian;    // unless the file should say and does not
+    VoxelSource source;               // its byte order is that of bigEndian
+    Result<Placement> placement = {}; // an error counts only where sizes and type are sound
+    double slope = 1.0;               // of the values: slope * stored + intercept
+    double intercept = 0.0;
+    std::string unit;
+    Modality modality = Modality::Unknown;
+    std::vector<std::string> notes; // what was assumed or left out
+};
+
+/// Takes `sizes` apart for formats whose fourth axis is time: axes of one voxel beyond the third
+/// are dropped. What is neither stays in FileHeader::sizes, for check() to refuse.
+void setAxes(FileHeader& header, const std::vector<std::int64_t>& sizes);
+
+/// From the start of a file, which may lie anywhere in memory. `path`: for messages and to find
+/// what the header names. `deflated`: whether `start` was inflated from the file.
+/// Fails: FileUnreadable (not of this format), FileTruncated, UnsupportedDims (time is not the
+/// slowest axis), InvalidGeometry (NIfTI: negative spacing). Cost: the header only. Tested by:
+/// io_header_test.cpp, io_nrrd_test.cpp, io_meta_test.cpp, io_nifti_test.cpp
+Result<FileHeader> parseNrrdHeader(std::string_view start, const std::filesystem::path& path);
+Result<FileHeader> parseMetaHeader(std::string_view start, const std::filesystem::path& path);
+Result<FileHeader> parseNiftiHeader(std::string_view start, const std::filesystem::path& path,
+                                    bool deflated);
+
+/// The same of a file.
 Result<FileHeader> readNrrdHeader(const std::filesystem::path& path);
 Result<FileHeader> readMetaHeader(const std::filesystem::path& path);
 Result<FileHeader> readNiftiHeader(const std::filesystem::path& path);
 
-/// Everything that can be known to be wrong before a voxel is used. A deflated stream is
-/// inflated once and thrown away, for the format libraries fill up with zeros, without a word,
-/// what a cut file lacks.
+/// Everything that can be known to be wrong before a voxel is read: afterwards all sizes fit, and
+/// the files can hold as many voxels as the header asks for. Gives the bytes of one volume as
+/// they are stored.
 /// Fails: UnsupportedType, UnsupportedDims, EmptyVolume, SizeOverflow, InvalidGeometry,
-/// FileNotFound (detached data), FileTruncated.
-Result<void> check(const std::filesystem::path& path, const FileHeader& header);
+/// FileUnreadable (encoding or byte order unknown), FileNotFound (detached data), FileTruncated.
+/// Cost: looks each data file up.
+Result<std::int64_t> check(const std::filesystem::path& path, const FileHeader& header);
 
 } // namespace slabcast

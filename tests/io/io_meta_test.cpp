@@ -27,7 +27,9 @@ std::string header(const Fields& changes = {}) {
     for (const char* name :
          {"ObjectType", "NDims", "BinaryData", "BinaryDataByteOrderMSB", "CompressedData",
           "CompressedDataSize", "TransformMatrix", "Offset", "ElementSpacing", "DimSize",
-          "ElementNumberOfChannels", "Modality", "HeaderSize", "ElementType", "ElementDataFile"}) {
+          "ElementNumberOfChannels", "ElementToIntensityFunctionSlope",
+          "ElementToIntensityFunctionOffset", "DistanceUnits", "Modality", "HeaderSize",
+          "ElementType", "ElementDataFile"}) {
         const auto field = fields.find(name);
         if (field != fields.end() && !field->second.empty()) {
             text += field->first + " = " + field->second + "\n";
@@ -116,7 +118,11 @@ TEST_F(MetaTest, headersThatLieAreNamed) {
         {{{"NDims", "2"}}, ErrorCode::FileUnreadable, "check"},
         {{{"ElementNumberOfChannels", "3"}}, ErrorCode::UnsupportedType, "grey"},
         {{{"ElementType", "MET_STRING"}}, ErrorCode::UnsupportedType, "convert"},
-        {{{"ElementType", "MET_LONG_LONG"}}, ErrorCode::UnsupportedType, "convert"},
+        {{{"ElementType", "MET_LONG_LONG"}}, ErrorCode::FileTruncated, "fetch"},
+        {{{"ElementToIntensityFunctionSlope", "x"}}, ErrorCode::FileUnreadable, "FunctionSlope"},
+        {{{"Offset", "1 2"}}, ErrorCode::FileUnreadable, "'offset' should hold 3 numbers"},
+        {{{"TransformMatrix", "1 0 0"}}, ErrorCode::FileUnreadable, "9 numbers"},
+        {{{"HeaderSize", "-2"}}, ErrorCode::FileUnreadable, "headersize"},
         {{{"ElementSpacing", "0.5 0 3"}}, ErrorCode::InvalidGeometry, "spacing"},
         {{{"ElementSpacing", "0.5 nan 3"}}, ErrorCode::InvalidGeometry, "spacing"},
         {{{"ElementDataFile", "gone.raw"}}, ErrorCode::FileNotFound, "keep both"},
@@ -128,6 +134,106 @@ TEST_F(MetaTest, headersThatLieAreNamed) {
         const auto path = write("a.mha", header(cases[i].changes) + codes<std::int16_t>());
         expectFailure(loadVolume(path), cases[i].code, path.string(), cases[i].remedy);
     }
+}
+
+TEST_F(MetaTest, deflatedFilesOfTheirOwnNeedNoSize) {
+    const std::string packed = deflated(codes<std::int16_t>());
+    write("a.zraw", packed);
+    for (const char* yes : {"True", "true", "1", "T"}) {
+        SCOPED_TRACE(yes);
+        expectWhole(loadVolume(
+            write("a.mhd", header({{"CompressedData", yes}, {"ElementDataFile", "a.zraw"}}))));
+        expectWhole(loadVolume(
+            write("a.mha", header({{"CompressedData", yes},
+                                   {"CompressedDataSize", std::to_string(packed.size())}}) +
+                               packed)));
+    }
+    write("a.zraw", packed.substr(0, packed.size() - 3));
+    const auto path =
+        write("b.mhd", header({{"CompressedData", "True"}, {"ElementDataFile", "a.zraw"}}));
+    expectFailure(loadVolume(path), ErrorCode::FileTruncated, path.string(), "a.zraw");
+}
+
+TEST_F(MetaTest, truthIsWrittenInSeveralWays) {
+    for (const char* yes : {"True", "true", "1"}) {
+        expectWhole(loadVolume(
+            write("a.mha", header({{"BinaryData", yes}, {"BinaryDataByteOrderMSB", yes}}) +
+                               codes<std::int16_t>(kDims, true))));
+    }
+    for (const char* no : {"False", "false", "0"}) {
+        std::string text;
+        for (int i = 0; i < 60; ++i) {
+            text += std::to_string(i) + (i % 5 == 4 ? "\n" : " ");
+        }
+        expectWhole(loadVolume(write("a.mha", header({{"BinaryData", no}}) + text)));
+    }
+}
+
+TEST_F(MetaTest, slicesInFilesOfTheirOwnAreRead) {
+    const std::string voxels = codes<std::int16_t>();
+    for (int i = 0; i < 3; ++i) {
+        write("s00" + std::to_string(i + 1) + ".raw",
+              voxels.substr(static_cast<std::size_t>(40 * i), 40));
+    }
+    const std::string names = "\ns001.raw\ns002.raw\ns003.raw\n";
+    for (const std::string& files :
+         {"LIST" + names, "LIST 2D" + names, std::string("s%03d.raw 1 3 1")}) {
+        expectWhole(loadVolume(write("a.mhd", header({{"ElementDataFile", files}}))));
+    }
+    const auto path = write("b.mhd", header({{"ElementDataFile", "LIST" + names}}));
+    truncate(at("s002.raw"), 39);
+    expectFailure(loadVolume(path), ErrorCode::FileTruncated, path.string(),
+                  "s002.raw has 39 bytes");
+    std::filesystem::remove(at("s002.raw"));
+    expectFailure(loadVolume(path), ErrorCode::FileNotFound, path.string(), "s002.raw");
+    const auto few = write("c.mhd", header({{"ElementDataFile", "LIST\ns001.raw\n"}}));
+    expectFailure(loadVolume(few), ErrorCode::FileUnreadable, few.string(), "lists 1 files");
+}
+
+TEST_F(MetaTest, intensityFunctionIsApplied) {
+    const Result<Volume> volume =
+        loadVolume(write("a.mha", header({{"ElementToIntensityFunctionSlope", "2"},
+                                          {"ElementToIntensityFunctionOffset", "-24"}}) +
+                                      codes<std::int16_t>()));
+    ASSERT_LOADED(volume);
+    EXPECT_EQ(volume->valueAt({0, 0, 0}), -24.0);
+    EXPECT_EQ(volume->valueAt({4, 3, 2}), 2.0 * codeAt(4, 3, 2) - 24.0);
+    expectWhole(loadVolume(write("b.mha", header({{"ElementToIntensityFunctionSlope", "1"},
+                                                  {"ElementToIntensityFunctionOffset", "0"}}) +
+                                              codes<std::int16_t>())));
+}
+
+TEST_F(MetaTest, oneOfSeveralTimesIsTaken) {
+    const Fields four = {{"NDims", "4"},
+                         {"DimSize", "5 4 3 2"},
+                         {"TransformMatrix", "0.6 0.8 0 0 -0.8 0.6 0 0 0 0 1 0 0 0 0 1"},
+                         {"Offset", "10 -20 30 0"},
+                         {"ElementSpacing", "0.5 2 3 1"}};
+    const auto path = write("a.mha", header(four) + std::string(120, 'x') + codes<std::int16_t>());
+    expectFailure(loadVolume(path), ErrorCode::UnsupportedDims, path.string(),
+                  "--time 0 to --time 1");
+    LoadOptions options;
+    options.time = 1;
+    expectWhole(loadVolume(path, options));
+    Fields one = four;
+    one["DimSize"] = "5 4 3 1";
+    expectWhole(loadVolume(write("b.mha", header(one) + codes<std::int16_t>())));
+}
+
+TEST_F(MetaTest, unitsOfDistanceScale) {
+    const Result<Volume> volume =
+        loadVolume(write("a.mha", header({{"DistanceUnits", "um"}}) + codes<std::int16_t>()));
+    ASSERT_LOADED(volume);
+    expectNear(volume->geometry.spacingMm, {5e-4, 2e-3, 3e-3}, 1e-12);
+    expectNear(volume->geometry.originMm, {0.01, -0.02, 0.03}, 1e-12);
+}
+
+TEST_F(MetaTest, integersOf64BitsAreReadWhereTheyFit) {
+    const Result<Volume> volume = loadVolume(
+        write("a.mha", header({{"ElementType", "MET_LONG_LONG"}}) + codes<std::int64_t>()));
+    ASSERT_LOADED(volume);
+    EXPECT_EQ(volume->type, VoxelType::I32);
+    expectCodes(*volume);
 }
 
 TEST_F(MetaTest, truncatedFileIsNamed) {

@@ -21,6 +21,8 @@ struct NiftiHeader {
     std::array<float, 3> qoffset{};
     std::int16_t sformCode = 1;
     std::array<std::array<float, 4>, 3> srow{{{0.5F, 0, 0, 10}, {0, 2, 0, -20}, {0, 0, 3, 30}}};
+    float voxOffset = 352;
+    char units = 2; // mm
     bool bigEndian = false;
 
     template <class T>
@@ -41,10 +43,10 @@ struct NiftiHeader {
         }
         put(all, 70, datatype);
         put(all, 72, bitpix);
-        put(all, 108, 352.0F);
+        put(all, 108, voxOffset);
         put(all, 112, sclSlope);
         put(all, 116, sclInter);
-        put(all, 123, char{2}); // mm
+        put(all, 123, units);
         put(all, 252, qformCode);
         put(all, 254, sformCode);
         for (std::size_t i = 0; i < 3; ++i) {
@@ -206,12 +208,267 @@ TEST_F(NiftiTest, headersThatLieAreNamed) {
     }
 }
 
-TEST_F(NiftiTest, versionTwoIsNamed) {
-    std::string bytes = NiftiHeader{}.bytes();
-    bytes[0] = 0x1c; // 540, the size of the version 2 header
-    bytes[1] = 0x02;
-    expectFailure(loadVolume(write("a.nii", bytes + codes<std::int16_t>())),
-                  ErrorCode::UnsupportedType, "a.nii", "convert");
+/// The same header in the form of nifti2.h.
+std::string versionTwo(const NiftiHeader& header, double voxOffset = 544.0) {
+    std::string all(544, '\0');
+    header.put(all, 0, std::int32_t{540});
+    all.replace(4, 8, std::string("n+2\0\r\n\x1A\n", 8));
+    header.put(all, 12, header.datatype);
+    header.put(all, 14, header.bitpix);
+    for (std::size_t i = 0; i < 8; ++i) {
+        header.put(all, 16 + 8 * i, std::int64_t{header.dim[i]});
+        header.put(all, 104 + 8 * i, double{header.pixdim[i]});
+    }
+    header.put(all, 168, static_cast<std::int64_t>(voxOffset));
+    header.put(all, 176, double{header.sclSlope});
+    header.put(all, 184, double{header.sclInter});
+    header.put(all, 344, std::int32_t{header.qformCode});
+    header.put(all, 348, std::int32_t{header.sformCode});
+    for (std::size_t i = 0; i < 3; ++i) {
+        header.put(all, 352 + 8 * i, double{header.quatern[i]});
+        header.put(all, 376 + 8 * i, double{header.qoffset[i]});
+        for (std::size_t k = 0; k < 4; ++k) {
+            header.put(all, 400 + 32 * i + 8 * k, double{header.srow[i][k]});
+        }
+    }
+    header.put(all, 500, std::int32_t{header.units});
+    return all;
+}
+
+const glm::dmat3 kLpsFromRas(-1, 0, 0, 0, -1, 0, 0, 0, 1);
+
+TEST_F(NiftiTest, versionTwoIsRead) {
+    NiftiHeader header;
+    for (const bool bigEndian : {false, true}) {
+        header.bigEndian = bigEndian;
+        const Result<Volume> volume =
+            loadVolume(write("a.nii", versionTwo(header) + codes<std::int16_t>(kDims, bigEndian)));
+        ASSERT_LOADED(volume);
+        expectCodes(*volume);
+        expectGeometry(*volume, {0.5, 2, 3}, {-10, 20, 30}, kLpsFromRas);
+    }
+    expectFailure(loadVolume(write("b.nii", versionTwo({}).substr(0, 400))),
+                  ErrorCode::FileTruncated, "b.nii", "fetch");
+    expectFailure(loadVolume(write("b.nii", versionTwo({}, 540) + codes<std::int16_t>())),
+                  ErrorCode::FileUnreadable, "b.nii", "vox_offset");
+}
+
+TEST_F(NiftiTest, gzipBehindAPlainNameIsRead) {
+    const Result<Volume> volume =
+        loadVolume(writeGz("a.nii", NiftiHeader{}.bytes() + codes<std::int16_t>()));
+    ASSERT_LOADED(volume);
+    expectCodes(*volume);
+}
+
+TEST_F(NiftiTest, slopeOfZeroScalesNothing) {
+    for (const float slope : {0.0F, -0.0F, std::numeric_limits<float>::quiet_NaN()}) {
+        const Result<Volume> volume = loadVolume(write("a.nii", changed([&](NiftiHeader& h) {
+                                                                    h.sclSlope = slope;
+                                                                    h.sclInter = 100.0F;
+                                                                }).bytes() +
+                                                                    codes<std::int16_t>()));
+        ASSERT_LOADED(volume);
+        EXPECT_EQ(volume->type, VoxelType::I16);
+        expectCodes(*volume);
+        EXPECT_EQ(volume->notes.size(), slope == 0.0F ? 0U : 1U);
+    }
+}
+
+Result<Volume> loadChanged(const std::filesystem::path& path, const NiftiHeader& header) {
+    std::ofstream(path, std::ios::binary) << header.bytes() + codes<std::int16_t>();
+    return loadVolume(path);
+}
+
+TEST_F(NiftiTest, unitsScaleSpacingAndOrigin) {
+    NiftiHeader header;
+    for (const auto& [units, millimetres] : {std::pair(char{1}, 1e3),
+                                             {char{2}, 1.0},
+                                             {char{3}, 1e-3},
+                                             {char{0}, 1.0},
+                                             {char{11}, 1e-3}}) {
+        SCOPED_TRACE(static_cast<int>(units));
+        header.units = units;
+        const Result<Volume> volume = loadChanged(at("a.nii"), header);
+        ASSERT_LOADED(volume);
+        expectNear(volume->geometry.spacingMm / millimetres, {0.5, 2, 3});
+        expectNear(volume->geometry.originMm / millimetres, {-10, 20, 30});
+        EXPECT_TRUE(volume->notes.empty());
+    }
+    header.units = 7;
+    const Result<Volume> odd = loadChanged(at("a.nii"), header);
+    ASSERT_LOADED(odd);
+    ASSERT_EQ(odd->notes.size(), 1U);
+    EXPECT_NE(odd->notes[0].find("xyzt_units"), std::string::npos);
+}
+
+TEST_F(NiftiTest, smallVoxelsAndFarOriginsAreStraight) {
+    for (const float scale : {1e-5F, 1e-2F, 1e3F}) {
+        SCOPED_TRACE(scale);
+        const Result<Volume> volume = loadChanged(at("a.nii"), changed([&](NiftiHeader& h) {
+                                                      for (std::size_t i = 0; i < 3; ++i) {
+                                                          h.pixdim[i + 1] *= scale;
+                                                          h.srow[i][i] *= scale;
+                                                          h.srow[i][3] = 50000.0F;
+                                                      }
+                                                  }));
+        ASSERT_LOADED(volume);
+        expectGeometry(*volume, glm::dvec3(0.5, 2, 3) * double{scale}, {-50000, -50000, 50000},
+                       kLpsFromRas);
+    }
+}
+
+TEST_F(NiftiTest, pixdimThatIsRoundedIsFine) {
+    const Result<Volume> volume =
+        loadChanged(at("a.nii"), changed([](NiftiHeader& h) { h.pixdim[2] = 2.003F; }));
+    ASSERT_LOADED(volume);
+    expectGeometry(*volume, {0.5, 2, 3}, {-10, 20, 30}, kLpsFromRas);
+    EXPECT_TRUE(volume->notes.empty());
+    const Result<Volume> far =
+        loadChanged(at("a.nii"), changed([](NiftiHeader& h) { h.pixdim[2] = 5.0F; }));
+    ASSERT_LOADED(far);
+    expectGeometry(*far, {0.5, 2, 3}, {-10, 20, 30}, kLpsFromRas);
+    ASSERT_EQ(far->notes.size(), 1U);
+    EXPECT_NE(far->notes[0].find("pixdim"), std::string::npos);
+}
+
+TEST_F(NiftiTest, sformOfDirectionsOnlyTakesPixdim) {
+    const Result<Volume> volume =
+        loadChanged(at("a.nii"), changed([](NiftiHeader& h) {
+                        h.srow = {{{-1, 0, 0, 10}, {0, 1, 0, -20}, {0, 0, 1, 30}}};
+                    }));
+    ASSERT_LOADED(volume);
+    expectGeometry(*volume, {0.5, 2, 3}, {-10, 20, 30}, glm::dmat3(1, 0, 0, 0, -1, 0, 0, 0, 1));
+    ASSERT_EQ(volume->notes.size(), 1U);
+    EXPECT_NE(volume->notes[0].find("directions only"), std::string::npos);
+}
+
+TEST_F(NiftiTest, sformThatCannotServeLeavesItToTheQform) {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float kInf = std::numeric_limits<float>::infinity();
+    const std::vector<std::pair<NiftiHeader, std::string_view>> cases = {
+        {changed([&](NiftiHeader& h) {
+             h.srow = {{{kNan, kNan, kNan, kNan}}};
+         }),
+         "NaN"},
+        {changed([&](NiftiHeader& h) { h.srow[1][3] = kNan; }), "NaN"},
+        {changed([&](NiftiHeader& h) { h.srow[2][2] = kInf; }), "infinite"},
+        {changed([&](NiftiHeader& h) { h.srow = {}; }), "spans no space"},
+        {changed([&](NiftiHeader& h) { h.srow[0][1] = 1; }), "right angles"},
+        {changed([&](NiftiHeader& h) { h.srow[1] = h.srow[0]; }), "o"},
+    };
+    for (auto [header, word] : cases) {
+        SCOPED_TRACE(word);
+        const Result<Volume> refused = loadChanged(at("a.nii"), header);
+        expectFailure(refused, ErrorCode::InvalidGeometry, at("a.nii").string(), word);
+        header.qformCode = 1;
+        header.quatern = {0, 0, 1};
+        header.qoffset = {1, 2, 3};
+        const Result<Volume> volume = loadChanged(at("a.nii"), header);
+        ASSERT_LOADED(volume);
+        expectGeometry(*volume, {0.5, 2, 3}, {-1, -2, 3});
+        ASSERT_EQ(volume->notes.size(), 1U);
+        EXPECT_NE(volume->notes[0].find(word), std::string::npos) << volume->notes[0];
+        header.quatern[0] = kNan;
+        EXPECT_FALSE(loadChanged(at("a.nii"), header));
+    }
+}
+
+TEST_F(NiftiTest, qformServesWhereTheSformIsOfAnotherSpace) {
+    NiftiHeader header;
+    header.qformCode = 1;
+    header.quatern = {0, 0, 1}; // half a turn about z
+    header.qoffset = {1, 2, 3};
+    header.sformCode = 4;
+    Result<Volume> volume = loadChanged(at("a.nii"), header);
+    ASSERT_LOADED(volume);
+    expectGeometry(*volume, {0.5, 2, 3}, {-1, -2, 3});
+    header.sformCode = 1; // of the scanner
+    volume = loadChanged(at("a.nii"), header);
+    ASSERT_LOADED(volume);
+    expectGeometry(*volume, {0.5, 2, 3}, {-10, 20, 30}, kLpsFromRas);
+    header.sformCode = 0;
+    header.pixdim[0] = -1; // left-handed
+    volume = loadChanged(at("a.nii"), header);
+    ASSERT_LOADED(volume);
+    expectGeometry(*volume, {0.5, 2, 3}, {-1, -2, 3}, glm::dmat3(1, 0, 0, 0, 1, 0, 0, 0, -1));
+    header.qformCode = 0;
+    volume = loadChanged(at("a.nii"), header);
+    ASSERT_LOADED(volume);
+    expectGeometry(*volume, {0.5, 2, 3}, {0, 0, 0});
+}
+
+TEST_F(NiftiTest, offsetsBeforeTheVoxelsAreRefused) {
+    for (const float offset :
+         {348.0F, 350.0F, 1.0F, -1.0F, 352.5F, 1e30F, std::numeric_limits<float>::quiet_NaN()}) {
+        expectFailure(
+            loadChanged(at("a.nii"), changed([&](NiftiHeader& h) { h.voxOffset = offset; })),
+            ErrorCode::FileUnreadable, at("a.nii").string(), "vox_offset");
+    }
+    const Result<Volume> volume =
+        loadChanged(at("a.nii"), changed([](NiftiHeader& h) { h.voxOffset = 0.0F; }));
+    ASSERT_LOADED(volume);
+    expectCodes(*volume);
+    ASSERT_EQ(volume->notes.size(), 1U);
+    EXPECT_NE(volume->notes[0].find("vox_offset"), std::string::npos);
+    const Result<Volume> behind =
+        loadVolume(write("b.nii", changed([](NiftiHeader& h) { h.voxOffset = 368.0F; }).bytes() +
+                                      std::string(16, 'x') + codes<std::int16_t>()));
+    ASSERT_LOADED(behind);
+    expectCodes(*behind);
+}
+
+TEST_F(NiftiTest, integersOf64BitsAreReadWhereTheyFit) {
+    for (const std::int16_t type : {std::int16_t{1024}, std::int16_t{1280}}) {
+        NiftiHeader header;
+        header.datatype = type;
+        Result<Volume> volume = loadVolume(write("a.nii", header.bytes() + codes<std::int64_t>()));
+        ASSERT_LOADED(volume);
+        EXPECT_EQ(volume->type, VoxelType::I32);
+        expectCodes(*volume);
+        header.sclSlope = 2.0F;
+        volume = loadVolume(write("a.nii", header.bytes() + codes<std::int64_t>()));
+        ASSERT_LOADED(volume);
+        EXPECT_EQ(volume->type, VoxelType::F64);
+        EXPECT_EQ(volume->valueAt({4, 3, 2}), 2.0 * codeAt(4, 3, 2));
+    }
+    NiftiHeader header;
+    header.datatype = 1024;
+    std::string voxels = codes<std::int64_t>();
+    voxels[7] = 0x7F;
+    voxels[0] = 1;
+    expectFailure(loadVolume(write("a.nii", header.bytes() + voxels)), ErrorCode::UnsupportedType,
+                  at("a.nii").string(), "int64");
+}
+
+TEST_F(NiftiTest, typesAreNamedInWords) {
+    const std::vector<std::pair<std::int16_t, std::string_view>> types = {
+        {1, "bit"},           {32, "complex64"},    {128, "rgb24"},   {1536, "float128"},
+        {1792, "complex128"}, {2048, "complex256"}, {2304, "rgba32"}, {77, "code 77"}};
+    for (const auto& [code, word] : types) {
+        NiftiHeader header;
+        header.datatype = code;
+        expectFailure(loadChanged(at("a.nii"), header), ErrorCode::UnsupportedType,
+                      at("a.nii").string(), word);
+    }
+}
+
+TEST_F(NiftiTest, oneOfSeveralTimesIsTaken) {
+    NiftiHeader header;
+    header.dim = {4, 5, 4, 3, 2, 1, 1, 1};
+    const std::string bytes = header.bytes() + std::string(120, 'x') + codes<std::int16_t>();
+    LoadOptions options;
+    options.time = 1;
+    for (const auto& path : {write("a.nii", bytes), writeGz("a.nii.gz", bytes)}) {
+        expectFailure(loadVolume(path), ErrorCode::UnsupportedDims, path.string(),
+                      "--time 0 to --time 1");
+        const Result<Volume> volume = loadVolume(path, options);
+        ASSERT_LOADED(volume);
+        expectCodes(*volume);
+    }
+    const auto path = write("b.nii", NiftiHeader{}.bytes() + codes<std::int16_t>());
+    expectFailure(loadVolume(path, options), ErrorCode::InvalidArgument, path.string(), "0");
+    options.time = 0;
+    ASSERT_LOADED(loadVolume(path, options));
 }
 
 TEST_F(NiftiTest, truncatedFilesAreNamed) {

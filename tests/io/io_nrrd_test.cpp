@@ -26,9 +26,26 @@ std::string header(const Fields& changes = {}, std::string_view keys = "") {
         fields[name] = value;
     }
     std::string text = "NRRD0005\n";
-    for (const char* name :
-         {"type", "dimension", "space", "sizes", "spacings", "space directions", "kinds", "endian",
-          "encoding", "space origin", "byte skip", "data file"}) {
+    for (const char* name : {"type",
+                             "dimension",
+                             "space",
+                             "space dimension",
+                             "sizes",
+                             "spacings",
+                             "axis mins",
+                             "axis maxs",
+                             "centers",
+                             "units",
+                             "space directions",
+                             "kinds",
+                             "endian",
+                             "encoding",
+                             "space units",
+                             "space origin",
+                             "line skip",
+                             "byte skip",
+                             "spacing",
+                             "data file"}) {
         const auto field = fields.find(name);
         if (field != fields.end() && !field->second.empty()) {
             text += field->first + ": " + field->second + "\n";
@@ -239,6 +256,246 @@ TEST_F(NrrdTest, permutedAndFlippedAxesKeepEveryVoxelInItsPlace) {
     }
 }
 
+void expectInLps(const Fields& changes, glm::dvec3 spacing, glm::dvec3 origin, glm::dvec3 signs,
+                 const std::filesystem::path& path) {
+    std::ofstream(path, std::ios::binary) << header(changes) + codes<std::int16_t>();
+    const Result<Volume> volume = loadVolume(path);
+    ASSERT_LOADED(volume);
+    expectCodes(*volume);
+    expectGeometry(*volume, spacing, origin,
+                   glm::dmat3(signs.x, 0, 0, 0, signs.y, 0, 0, 0, signs.z));
+}
+
+TEST_F(NrrdTest, everySpaceIsTurnedToLps) {
+    const std::vector<std::pair<const char*, glm::dvec3>> spaces = {
+        {"left-posterior-superior", {1, 1, 1}},
+        {"LPS", {1, 1, 1}},
+        {"lps", {1, 1, 1}},
+        {"right-anterior-superior", {-1, -1, 1}},
+        {"RAS", {-1, -1, 1}},
+        {"left-anterior-superior", {1, -1, 1}},
+        {"LAS", {1, -1, 1}},
+        {"right-posterior-inferior", {-1, 1, -1}},
+    };
+    for (const auto& [space, signs] : spaces) {
+        SCOPED_TRACE(space);
+        expectInLps({{"space", space}}, {0.5, 2, 3}, signs * glm::dvec3(10, -20, 30), signs,
+                    at("a.nrrd"));
+    }
+}
+
+TEST_F(NrrdTest, spacesWithTimeLoseIt) {
+    for (const char* space : {"left-anterior-superior-time", "LAST"}) {
+        SCOPED_TRACE(space);
+        expectInLps({{"dimension", "4"},
+                     {"sizes", "5 4 3 1"},
+                     {"space", space},
+                     {"space directions", "(0.5,0,0,0) (0,2,0,0) (0,0,3,0) (0,0,0,7)"},
+                     {"space origin", "(10,-20,30,5)"}},
+                    {0.5, 2, 3}, {10, 20, 30}, {1, -1, 1}, at("a.nrrd"));
+    }
+}
+
+TEST_F(NrrdTest, spacesWithoutSidesAreSaid) {
+    for (const char* space : {"scanner-xyz", "3D-right-handed", "3D-left-handed-time", "moon"}) {
+        const Result<Volume> volume =
+            loadVolume(write("a.nrrd", header({{"space", space}}) + codes<std::int16_t>()));
+        ASSERT_LOADED(volume);
+        expectGeometry(*volume, {0.5, 2, 3}, {10, -20, 30});
+        ASSERT_EQ(volume->notes.size(), 1U);
+        EXPECT_NE(volume->notes[0].find(space == std::string("moon") ? "moon" : "d"),
+                  std::string::npos);
+    }
+}
+
+TEST_F(NrrdTest, unitsOfSpaceScaleSpacingAndOrigin) {
+    expectInLps({{"space units", "\"microns\" \"microns\" \"microns\""}}, {5e-4, 2e-3, 3e-3},
+                {0.01, -0.02, 0.03}, {1, 1, 1}, at("a.nrrd"));
+    expectInLps({{"space units", "\"m\" \"cm\" \"mm\""}}, {500, 20, 3}, {1e4, -200, 30}, {1, 1, 1},
+                at("a.nrrd"));
+    expectInLps({{"space units", "m m m"}, {"space", "RAS"}}, {500, 2000, 3000}, {-1e4, 2e4, 3e4},
+                {-1, -1, 1}, at("a.nrrd"));
+    expectInLps({{"space", ""},
+                 {"space directions", ""},
+                 {"space origin", ""},
+                 {"spacings", "1 2 3"},
+                 {"units", "\"um\" \"um\" \"um\""}},
+                {1e-3, 2e-3, 3e-3}, {0, 0, 0}, {1, 1, 1}, at("a.nrrd"));
+    const Result<Volume> odd = loadVolume(
+        write("b.nrrd", header({{"space units", "\"ell\" \"mm\" \"\""}}) + codes<std::int16_t>()));
+    ASSERT_LOADED(odd);
+    expectGeometry(*odd, {0.5, 2, 3}, {10, -20, 30});
+    ASSERT_EQ(odd->notes.size(), 1U);
+    EXPECT_NE(odd->notes[0].find("'ell'"), std::string::npos) << odd->notes[0];
+}
+
+TEST_F(NrrdTest, rangesOfAxesGiveSpacingAndOrigin) {
+    Fields fields = {{"space", ""},          {"space directions", ""},
+                     {"space origin", ""},   {"axis mins", "1 2 3"},
+                     {"axis maxs", "5 8 7"}, {"centers", "node node node"}};
+    expectInLps(fields, {1, 2, 2}, {1, 2, 3}, {1, 1, 1}, at("a.nrrd"));
+    fields["axis maxs"] = "6 6 6";
+    for (const char* centers : {"cell cell cell", ""}) {
+        fields["centers"] = centers;
+        expectInLps(fields, {1, 1, 1}, {1.5, 2.5, 3.5}, {1, 1, 1}, at("a.nrrd"));
+    }
+    fields["axis mins"] = "6 2 3";
+    fields["axis maxs"] = "1 6 6";
+    expectInLps(fields, {1, 1, 1}, {5.5, 2.5, 3.5}, {-1, 1, 1}, at("a.nrrd"));
+    fields["spacings"] = "2 4 6";
+    fields["axis maxs"] = "";
+    fields["centers"] = "node cell ???";
+    expectInLps(fields, {2, 4, 6}, {6, 4, 6}, {1, 1, 1}, at("a.nrrd"));
+}
+
+TEST_F(NrrdTest, aFurtherAxisOfOneIsDropped) {
+    const glm::dvec3 spacing{0.5, 2, 3};
+    const glm::dvec3 origin{10, -20, 30};
+    for (const char* kind : {"time", "list", "domain", "vector", "scalar", "???"}) {
+        SCOPED_TRACE(kind);
+        expectInLps({{"dimension", "4"},
+                     {"sizes", "5 4 3 1"},
+                     {"kinds", std::string("domain domain domain ") + kind},
+                     {"space directions", "(0.5,0,0) (0,2,0) (0,0,3) none"}},
+                    spacing, origin, {1, 1, 1}, at("a.nrrd"));
+        expectInLps({{"dimension", "4"},
+                     {"sizes", "1 5 4 3"},
+                     {"kinds", std::string(kind) + " domain domain domain"},
+                     {"space directions", "none (0.5,0,0) (0,2,0) (0,0,3)"}},
+                    spacing, origin, {1, 1, 1}, at("a.nrrd"));
+    }
+    expectInLps({{"dimension", "5"},
+                 {"sizes", "5 4 3 1 1"},
+                 {"space directions", "(0.5,0,0) (0,2,0) (0,0,3) none none"}},
+                spacing, origin, {1, 1, 1}, at("a.nrrd"));
+    expectInLps({{"dimension", "4"},
+                 {"sizes", "5 4 3 1"},
+                 {"space", ""},
+                 {"space directions", ""},
+                 {"space origin", ""},
+                 {"spacings", "0.5 2 3 nan"}},
+                spacing, {0, 0, 0}, {1, 1, 1}, at("a.nrrd"));
+}
+
+TEST_F(NrrdTest, oneOfSeveralTimesIsTaken) {
+    const std::string voxels =
+        std::string(120, 'x') + codes<std::int16_t>() + std::string(120, 'x');
+    for (const char* kind : {"time", "list", "???"}) {
+        SCOPED_TRACE(kind);
+        const auto path =
+            write("a.nrrd", header({{"dimension", "4"},
+                                    {"sizes", "5 4 3 3"},
+                                    {"kinds", std::string("domain domain domain ") + kind},
+                                    {"space directions", "(0.5,0,0) (0,2,0) (0,0,3) none"}}) +
+                                voxels);
+        expectFailure(loadVolume(path), ErrorCode::UnsupportedDims, path.string(),
+                      "3 volumes over time; take one with --time 0 to --time 2");
+        LoadOptions options;
+        options.time = 1;
+        const Result<Volume> volume = loadVolume(path, options);
+        ASSERT_LOADED(volume);
+        expectCodes(*volume);
+        options.time = 3;
+        expectFailure(loadVolume(path, options), ErrorCode::InvalidArgument, path.string(),
+                      "from 0 to 2");
+    }
+    const auto mixed = write("b.nrrd", header({{"dimension", "4"},
+                                               {"sizes", "3 5 4 3"},
+                                               {"kinds", "time domain domain domain"},
+                                               {"space directions", ""}}) +
+                                           voxels);
+    expectFailure(loadVolume(mixed), ErrorCode::UnsupportedDims, mixed.string(), "extract");
+}
+
+TEST_F(NrrdTest, textVoxelsAreRead) {
+    for (const char* between : {" ", ",", ", ", "\n"}) {
+        std::string text;
+        for (int i = 0; i < 60; ++i) {
+            text += std::to_string(i) + between;
+        }
+        const Result<Volume> volume = loadVolume(
+            write("a.nrrd", header({{"encoding", "ascii"}, {"endian", ""}}) + text + "\n"));
+        ASSERT_LOADED(volume);
+        EXPECT_EQ(volume->type, VoxelType::I16);
+        expectCodes(*volume);
+    }
+    const auto word = write("b.nrrd", header({{"encoding", "ascii"}}) + std::string(5000, '1'));
+    expectFailure(loadVolume(word), ErrorCode::FileUnreadable, word.string(), "int16");
+    const auto few = write("c.nrrd", header({{"encoding", "txt"}}) + std::string(200, ' ') + "1 2");
+    expectFailure(loadVolume(few), ErrorCode::FileTruncated, few.string(), "after 2 voxels");
+}
+
+TEST_F(NrrdTest, hexVoxelsAreRead) {
+    std::string text;
+    for (int i = 0; i < 60; ++i) {
+        std::ostringstream byte;
+        byte << std::hex << i;
+        text += (i < 16 ? "000" : "00") + byte.str() + (i % 9 == 0 ? "\n" : "");
+    }
+    const Result<Volume> volume =
+        loadVolume(write("a.nrrd", header({{"encoding", "hex"}, {"endian", "big"}}) + text));
+    ASSERT_LOADED(volume);
+    expectCodes(*volume);
+}
+
+TEST_F(NrrdTest, skipsComeBeforeAndWithinGzip) {
+    writeGz("z.gz", "skipped!" + codes<std::int16_t>());
+    std::ifstream stream(at("z.gz"), std::ios::binary);
+    const std::string packed{std::istreambuf_iterator<char>(stream), {}};
+    const Result<Volume> attached = loadVolume(
+        write("a.nrrd", header({{"encoding", "gzip"}, {"line skip", "2"}, {"byte skip", "8"}}) +
+                            "one\ntwo\n" + packed));
+    ASSERT_LOADED(attached);
+    expectCodes(*attached);
+    write("b.gz", "one\n" + packed);
+    for (const char* skip : {"8", "-1"}) {
+        const Result<Volume> detached =
+            loadVolume(write("b.nhdr", header({{"encoding", "gz"},
+                                               {"line skip", "1"},
+                                               {"byte skip", skip},
+                                               {"data file", "b.gz"}})));
+        ASSERT_LOADED(detached);
+        expectCodes(*detached);
+    }
+    write("c.raw", "one\nxx" + codes<std::int16_t>());
+    for (const char* skip : {"2", "-1"}) {
+        const Result<Volume> raw = loadVolume(write(
+            "c.nhdr", header({{"line skip", "1"}, {"byte skip", skip}, {"data file", "c.raw"}})));
+        ASSERT_LOADED(raw);
+        expectCodes(*raw);
+    }
+}
+
+TEST_F(NrrdTest, slicesInFilesOfTheirOwnAreRead) {
+    const std::string voxels = codes<std::int16_t>();
+    for (int i = 0; i < 3; ++i) {
+        write("s" + std::to_string(i + 7) + ".raw",
+              voxels.substr(static_cast<std::size_t>(40 * i), 40));
+    }
+    const std::string list = "LIST\ns7.raw\ns8.raw\n\ns9.raw\n";
+    for (const std::string& files :
+         {list, std::string("s%d.raw 7 9 1"), "LIST 2" + list.substr(4)}) {
+        const auto path = write("a.nhdr", header({{"data file", files}}));
+        const Result<Volume> volume = loadVolume(path);
+        ASSERT_LOADED(volume);
+        expectCodes(*volume);
+    }
+    truncate(at("s8.raw"), 39);
+    const auto path = write("a.nhdr", header({{"data file", list}}));
+    expectFailure(loadVolume(path), ErrorCode::FileTruncated, path.string(), "s8.raw has 39 bytes");
+    std::filesystem::remove(at("s8.raw"));
+    expectFailure(loadVolume(path), ErrorCode::FileNotFound, path.string(), "s8.raw, which is not");
+}
+
+TEST_F(NrrdTest, integersOf64BitsAreReadWhereTheyFit) {
+    expectType<std::int32_t>(write("a.nrrd", header({{"type", "int64"}}) + codes<std::int64_t>()),
+                             VoxelType::I32);
+    expectType<std::int32_t>(
+        write("a.nrrd", header({{"type", "unsigned long long int"}, {"endian", "big"}}) +
+                            codes<std::int64_t>(kDims, true)),
+        VoxelType::I32);
+}
+
 struct BadHeader {
     Fields changes;
     ErrorCode code;
@@ -264,7 +521,25 @@ TEST_F(NrrdTest, headersThatLieAreNamed) {
          ErrorCode::UnsupportedType,
          "grey"},
         {{{"type", "block"}}, ErrorCode::UnsupportedType, "convert"},
-        {{{"type", "int64"}}, ErrorCode::UnsupportedType, "convert"},
+        {{{"type", "int64"}}, ErrorCode::FileTruncated, "fetch"},
+        {{{"type", "long double"}}, ErrorCode::UnsupportedType, "'long double'"},
+        {{{"endian", ""}}, ErrorCode::FileUnreadable, "'endian: little'"},
+        {{{"endian", "middle"}}, ErrorCode::FileUnreadable, "'endian'"},
+        {{{"encoding", "bzip2"}},
+         ErrorCode::UnsupportedType,
+         "bzip2 is not read; save it with gzip"},
+        {{{"encoding", "bz2"}}, ErrorCode::UnsupportedType, "bzip2 is not read; save it with gzip"},
+        {{{"encoding", ""}}, ErrorCode::FileUnreadable, "'encoding'"},
+        {{{"spacing", "1 1 2"}}, ErrorCode::FileUnreadable, "'spacing' is no field"},
+        {{{"byte skip", "x"}}, ErrorCode::FileUnreadable, "'byte skip'"},
+        {{{"line skip", "-1"}}, ErrorCode::FileUnreadable, "'line skip'"},
+        {{{"line skip", "9999999999"}}, ErrorCode::FileTruncated, "fetch"},
+        {{{"space directions", "(1,0,0) (0,1,0) (0,0,1) (0,0,1)"}},
+         ErrorCode::FileUnreadable,
+         "4 vectors for 3"},
+        {{{"space", ""}, {"space directions", ""}, {"space origin", ""}, {"spacings", "1 2"}},
+         ErrorCode::FileUnreadable,
+         "2 numbers for 3"},
         {{{"encoding", "pigeon"}}, ErrorCode::FileUnreadable, "check"},
         {{{"space directions", "(0,0,0) (0,2,0) (0,0,3)"}}, ErrorCode::InvalidGeometry, "spacing"},
         {{{"space directions", "(nan,0,0) (0,2,0) (0,0,3)"}},
