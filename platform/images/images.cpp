@@ -58,7 +58,9 @@ auto withoutExceptions(const Body& body) noexcept -> decltype(body()) {
 
 ImageFile* open(const char* path) noexcept {
     return withoutExceptions([&]() -> ImageFile* {
-        auto input = OIIO::ImageInput::open(path);
+        OIIO::ImageSpec wishes;
+        wishes.attribute("oiio:UnassociatedAlpha", 1); // channels as they are stored
+        auto input = OIIO::ImageInput::open(path, &wishes);
         if (!input) {
             error = OIIO::geterror();
             return nullptr;
@@ -71,12 +73,14 @@ void close(ImageFile* file) noexcept {
     delete file;
 }
 
-/// Millimetres per pixel along one axis, where the file says so, else 1.
-double pixelSpacingMm(const OIIO::ImageSpec& spec, const char* resolutionTag) {
+/// PNG counts pixels per metre, which the library turns into inches.
+void takeResolution(const OIIO::ImageSpec& spec, bool isPng, ImagePage& page) {
     const std::string unit(spec.get_string_attribute("ResolutionUnit"));
-    const double unitMm = unit == "in" || unit == "inch" ? 25.4 : unit == "cm" ? 10.0 : 0.0;
-    const double resolution = spec.get_float_attribute(resolutionTag);
-    return unitMm > 0.0 && resolution > 0.0 ? unitMm / resolution : 1.0;
+    const bool isInch = unit == "in" || unit == "inch";
+    page.resolutionUnit = isInch && !isPng ? 2 : isInch || unit == "cm" || unit == "m" ? 3 : 1;
+    const double share = isInch && isPng ? 1.0 / 2.54 : unit == "m" ? 0.01 : 1.0;
+    page.resolution[0] = spec.get_float_attribute("XResolution") * share;
+    page.resolution[1] = spec.get_float_attribute("YResolution") * share;
 }
 
 /// None where the type is not read.
@@ -95,23 +99,27 @@ bool describe(ImageFile* file, int index, ImagePage* page) noexcept {
         }
         const OIIO::ImageSpec& spec = file->input->spec();
         const PixelType* type = pixelType(spec);
+        const std::string format = file->input->format_name();
         *page = {.width = spec.width,
                  .height = spec.height,
                  .channels = spec.nchannels,
                  .type = type != nullptr ? type->type : VoxelType::U8,
                  .isReadable = type != nullptr,
-                 .typeName = spec.format.c_str(),
-                 .spacingMm = {pixelSpacingMm(spec, "XResolution"),
-                               pixelSpacingMm(spec, "YResolution")}};
+                 .typeName = spec.format.c_str()};
+        takeResolution(spec, format == "png", *page);
+        if (format == "jpeg" || format == "png") { // with other formats, it is the library's matter
+            page->orientation = spec.get_int_attribute("Orientation", 1);
+        }
         return true;
     });
 }
 
-bool read(ImageFile* file, int index, void* pixels) noexcept {
+bool read(ImageFile* file, int index, int channel, void* pixels) noexcept {
     return withoutExceptions([&] {
         const PixelType* type = pixelType(file->input->spec(index));
         const bool isRead =
-            type != nullptr && file->input->read_image(index, 0, 0, 1, type->read, pixels);
+            type != nullptr &&
+            file->input->read_image(index, 0, channel, channel + 1, type->read, pixels);
         error = isRead ? "" : file->input->geterror();
         return isRead;
     });

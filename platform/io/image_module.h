@@ -20,7 +20,9 @@ struct ImagePage {
     VoxelType type = VoxelType::U8;
     bool isReadable = false;
     const char* typeName = "";
-    double spacingMm[2] = {1.0, 1.0}; // 1 where the file is silent
+    double resolution[2] = {0.0, 0.0}; // pixels per unit along rows and columns, 0: unsaid
+    int resolutionUnit = 1;            // as in TIFF: 1 none, 2 inch, 3 centimetre
+    int orientation = 1;               // as in TIFF: 1 to 8
 };
 
 /// What the module slabcast_images can do, which holds all that needs OpenImageIO. That library
@@ -28,7 +30,7 @@ struct ImagePage {
 /// take 0.3 s and 134 MiB, opened on first use, 0.03 s and 23 MiB. Plain types, and nothing thrown.
 /// What fails returns null or false, and lastError() of the same thread says why.
 struct ImageModule {
-    static constexpr std::uint32_t kVersion = 1; // of this layout
+    static constexpr std::uint32_t kVersion = 2; // of this layout
 
     using TakeBytes = void (*)(void* taker, const char* bytes, std::size_t count);
 
@@ -38,7 +40,8 @@ struct ImageModule {
     void (*close)(ImageFile* file) noexcept;
     /// False also where there is no such page.
     bool (*describe)(ImageFile* file, int index, ImagePage* page) noexcept;
-    bool (*read)(ImageFile* file, int index, void* pixels) noexcept;
+    /// One channel, from 0.
+    bool (*read)(ImageFile* file, int index, int channel, void* pixels) noexcept;
     bool (*encodeExr)(int width, int height, const float* rgba, TakeBytes take,
                       void* taker) noexcept;
 };

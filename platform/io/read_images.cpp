@@ -1,166 +1,175 @@
 #include <algorithm>
 #include <array>
+#include <map>
 #include <memory>
-#include <optional>
 
 #include <fmt/format.h>
 
-#include "platform/io/image_module.h"
+#include "platform/io/image_order.h"
+#include "platform/io/image_source.h"
 #include "platform/io/parse_text.h"
 #include "platform/io/readers.h"
-#include "platform/io/tiff_extent.h"
 
 namespace slabcast {
 
 namespace {
 
-struct Page {
+struct StackFile {
     std::filesystem::path path;
-    int index = 0; // within the file
+    std::unique_ptr<ImageSource> source;
 };
 
-tl::unexpected<Error> unreadable(const std::filesystem::path& path, const std::string& why) {
-    return fail(ErrorCode::FileUnreadable,
-                fmt::format("{}: {}; check that the file is a whole image", path.string(),
-                            why.empty() ? "no image format is recognised" : oneLine(why)));
+/// Files stay open between the look at them and the reading, if they are as few as this.
+constexpr std::size_t kOpenAtOnce = 100;
+
+Result<std::vector<StackFile>> lookAt(const std::vector<std::filesystem::path>& paths,
+                                      const LoadOptions& options) {
+    std::vector<StackFile> files;
+    for (const std::filesystem::path& path : paths) {
+        Result<std::unique_ptr<ImageSource>> source = openImage(path, options);
+        if (!source) {
+            return tl::unexpected(source.error());
+        }
+        if (paths.size() > kOpenAtOnce) {
+            (*source)->rest();
+        }
+        files.push_back({path, std::move(*source)});
+    }
+    return files;
 }
 
-/// A file of one or more pages, open for as long as it lives.
-class PagedFile {
-public:
-    static Result<PagedFile> open(const std::filesystem::path& path) {
-        const Result<const ImageModule*> module = imageModule(path, ErrorCode::FileUnreadable);
-        if (!module) {
-            return tl::unexpected(module.error());
-        }
-        if (!isWholeTiff(path)) {
-            return fail(ErrorCode::FileTruncated,
-                        fmt::format("{}: the file ends before its pages do; fetch it again",
-                                    path.string()));
-        }
-        ImageFile* file = (*module)->open(path.c_str());
-        if (file == nullptr) {
-            return unreadable(path, (*module)->lastError());
-        }
-        return PagedFile(path, **module, file);
-    }
+struct Kind {
+    glm::ivec2 size;
+    VoxelType type;
 
-    int countPages() {
-        ImagePage page;
-        int count = 1;
-        while (module_->describe(file_.get(), count, &page)) {
-            ++count;
-        }
-        return count;
-    }
-
-    /// Fails: FileUnreadable, UnsupportedType (not grey, or of a type that is not read).
-    Result<ImagePage> describe(int index) {
-        ImagePage page;
-        if (!module_->describe(file_.get(), index, &page)) {
-            return unreadable(path_, module_->lastError());
-        }
-        if (page.channels != 1) {
-            return fail(
-                ErrorCode::UnsupportedType,
-                fmt::format("{}: has {} channels, and a volume has one; convert the images to "
-                            "grey without alpha",
-                            path_.string(), page.channels));
-        }
-        if (!page.isReadable) {
-            return fail(
-                ErrorCode::UnsupportedType,
-                fmt::format("{}: pixels of type '{}' are not read; convert them to an integer "
-                            "of 8 to 32 bits, float or double",
-                            path_.string(), page.typeName));
-        }
-        return page;
-    }
-
-    /// Fails: FileTruncated.
-    Result<void> read(int index, std::byte* target) {
-        if (!module_->read(file_.get(), index, target)) {
-            return fail(
-                ErrorCode::FileTruncated,
-                fmt::format("{}: {}; the pixels end early or are damaged: fetch the file again",
-                            path_.string(), oneLine(module_->lastError())));
-        }
-        return {};
-    }
-
-private:
-    PagedFile(std::filesystem::path path, const ImageModule& module, ImageFile* file)
-        : path_(std::move(path)), module_(&module), file_(file, module.close) {}
-
-    std::filesystem::path path_;
-    const ImageModule* module_;
-    std::unique_ptr<ImageFile, void (*)(ImageFile*) noexcept> file_;
+    bool operator==(const Kind& other) const { return size == other.size && type == other.type; }
 };
 
-/// What all pages must share, from the first; voxels are made room for.
-Result<Volume> emptyVolume(const Page& first, std::size_t pageCount) {
-    const Result<ImagePage> page = PagedFile::open(first.path).and_then([&](PagedFile file) {
-        return file.describe(first.index);
-    });
-    if (!page) {
-        return tl::unexpected(page.error());
+/// Of all slices; of equally many, that of the first.
+Kind mostCommonKind(const std::vector<StackFile>& files) {
+    std::vector<std::pair<Kind, std::size_t>> kinds;
+    for (const StackFile& file : files) {
+        for (const ImageSlice& slice : file.source->facts().slices) {
+            const Kind kind{slice.size, slice.type};
+            const auto found = std::find_if(kinds.begin(), kinds.end(),
+                                            [&](const auto& entry) { return entry.first == kind; });
+            if (found == kinds.end()) {
+                kinds.emplace_back(kind, 1);
+            } else {
+                ++found->second;
+            }
+        }
     }
-    const glm::ivec3 dims{page->width, page->height, static_cast<int>(pageCount)};
-    const Result<std::int64_t> bytes = checkedByteCount({dims.x, dims.y, dims.z}, page->type);
+    return std::max_element(kinds.begin(), kinds.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; })
+        ->first;
+}
+
+/// Fails: InvalidGeometry, naming the one that differs.
+Result<void> checkKind(const std::vector<StackFile>& files, const Kind& kind) {
+    for (const StackFile& file : files) {
+        const ImageFacts& facts = file.source->facts();
+        for (const ImageSlice& slice : facts.slices) {
+            if (!(Kind{slice.size, slice.type} == kind)) {
+                const std::string page =
+                    facts.slices.size() > 1 ? fmt::format("page {} has ", slice.page) : "";
+                return fail(
+                    ErrorCode::InvalidGeometry,
+                    fmt::format("{}: {}{} x {} pixels of {}, where the other slices have "
+                                "{} x {} of {}; take away what does not belong to the stack",
+                                file.path.string(), page, slice.size.x, slice.size.y,
+                                name(slice.type), kind.size.x, kind.size.y, name(kind.type)));
+            }
+        }
+        const ImageFacts& first = files.front().source->facts();
+        if (facts.slope != first.slope || facts.intercept != first.intercept) {
+            return fail(ErrorCode::InvalidGeometry,
+                        fmt::format("{}: its calibration of values differs from that of {}; save "
+                                    "the stack as one file",
+                                    file.path.string(), files.front().path.filename().string()));
+        }
+    }
+    return {};
+}
+
+/// Each note once, with the file it is about where there are several.
+std::vector<std::string> gatherNotes(const std::vector<StackFile>& files,
+                                     const LoadOptions& options) {
+    std::vector<std::string> notes;
+    std::map<std::string, std::size_t> counts;
+    for (const StackFile& file : files) {
+        for (const std::string& note : file.source->facts().notes) {
+            ++counts[note];
+        }
+    }
+    for (const StackFile& file : files) {
+        for (const std::string& note : file.source->facts().notes) {
+            const auto found = counts.find(note);
+            if (found == counts.end()) {
+                continue;
+            }
+            const std::string others =
+                found->second > 1 ? fmt::format(" (so in {} files)", found->second) : "";
+            notes.push_back(
+                files.size() == 1
+                    ? note
+                    : fmt::format("{}: {}{}", file.path.filename().string(), note, others));
+            counts.erase(found);
+        }
+    }
+    const std::string& spacing = files.front().source->facts().spacingNote;
+    if (!spacing.empty() && !options.spacingMm) {
+        notes.push_back(spacing);
+    }
+    return notes;
+}
+
+Result<Volume> readSlices(std::vector<StackFile> files, const LoadOptions& options) {
+    std::size_t slices = 0;
+    for (const StackFile& file : files) {
+        slices += file.source->facts().slices.size();
+    }
+    const Kind kind = mostCommonKind(files);
+    if (const Result<void> alike = checkKind(files, kind); !alike) {
+        return tl::unexpected(alike.error());
+    }
+    const glm::i64vec3 dims{kind.size, slices};
+    const Result<std::int64_t> bytes = checkedByteCount(dims, kind.type);
     if (!bytes) {
         return tl::unexpected(bytes.error());
     }
+    const ImageFacts& facts = files.front().source->facts();
     Volume volume;
-    volume.name = first.path.filename().string();
-    volume.type = page->type;
+    volume.name = files.front().path.filename().string();
+    volume.type = kind.type;
+    volume.unit = facts.unit;
+    volume.rescaleSlope = facts.slope;
+    volume.rescaleIntercept = facts.intercept;
     volume.geometry.dims = dims;
-    volume.geometry.spacingMm = {page->spacingMm[0], page->spacingMm[1], 1.0};
+    volume.geometry.spacingMm = facts.spacingMm;
+    volume.notes = gatherNotes(files, options);
     volume.voxels.resize(*bytes);
-    return volume;
-}
-
-Result<void> readPage(const Page& page, const Volume& volume, PagedFile& file, std::byte* target) {
-    const glm::ivec3 dims = volume.geometry.dims;
-    const Result<ImagePage> found = file.describe(page.index);
-    if (!found) {
-        return tl::unexpected(found.error());
-    }
-    if (found->width != dims.x || found->height != dims.y || found->type != volume.type) {
-        return fail(
-            ErrorCode::InvalidGeometry,
-            fmt::format("{}: {} x {} pixels of {}, where the first slice has {} x {} of {}; "
-                        "take away what does not belong to the stack",
-                        page.path.string(), found->width, found->height, name(found->type), dims.x,
-                        dims.y, name(volume.type)));
-    }
-    return file.read(page.index, target);
-}
-
-Result<Volume> readPages(const std::vector<Page>& pages) {
-    Result<Volume> volume = emptyVolume(pages.front(), pages.size());
-    if (!volume) {
-        return volume;
-    }
-    const std::size_t pageBytes = volume->voxels.size() / pages.size();
-    std::byte* target = volume->voxels.data();
-    std::optional<PagedFile> file;
-    for (const Page& page : pages) {
-        if (page.index == 0) {
-            Result<PagedFile> opened = PagedFile::open(page.path);
-            if (!opened) {
-                return tl::unexpected(opened.error());
+    std::byte* target = volume.voxels.data();
+    for (StackFile& file : files) {
+        for (std::size_t i = 0; i < file.source->facts().slices.size(); ++i) {
+            if (const Result<void> read = file.source->read(i, target); !read) {
+                return tl::unexpected(read.error());
             }
-            file = std::move(*opened);
+            target += volume.voxels.size() / slices;
         }
-        if (const Result<void> read = readPage(page, *volume, *file, target); !read) {
-            return tl::unexpected(read.error());
-        }
-        target += pageBytes;
+        file.source->rest();
     }
     return volume;
 }
 
-tl::unexpected<Error> flat(const std::filesystem::path& path) {
+tl::unexpected<Error> flat(const std::filesystem::path& path, const std::string& severalOf) {
+    if (!severalOf.empty()) {
+        return fail(ErrorCode::UnsupportedDims,
+                    fmt::format("{}: says that it has {} of one slice each, and a volume has "
+                                "several slices; where they are slices, say so in ImageJ (Image > "
+                                "Properties) and save it again",
+                                path.string(), severalOf));
+    }
     return fail(ErrorCode::UnsupportedDims,
                 fmt::format("{}: holds one image of two dimensions, and a volume has three; name a "
                             "folder of slices or a file of several pages",
@@ -176,36 +185,31 @@ bool isImage(const std::filesystem::path& path) {
     return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 
-Result<Volume> readImagePages(const std::filesystem::path& path, const LoadOptions&) {
-    const Result<int> count =
-        PagedFile::open(path).map([](PagedFile file) { return file.countPages(); });
-    if (!count) {
-        return tl::unexpected(count.error());
+Result<Volume> readImagePages(const std::filesystem::path& path, const LoadOptions& options) {
+    Result<std::vector<StackFile>> files = lookAt({path}, options);
+    if (!files) {
+        return tl::unexpected(files.error());
     }
-    if (*count == 1) {
-        return flat(path);
-    }
-    std::vector<Page> pages;
-    for (int index = 0; index < *count; ++index) {
-        pages.push_back({path, index});
-    }
-    return readPages(pages);
+    const ImageFacts& facts = files->front().source->facts();
+    return facts.slices.size() == 1 ? Result<Volume>(flat(path, facts.severalOf))
+                                    : readSlices(std::move(*files), options);
 }
 
 Result<Volume> readImageStack(const std::filesystem::path& folder,
-                              std::vector<std::filesystem::path> files,
+                              std::vector<std::filesystem::path> paths,
                               const LoadOptions& options) {
-    if (files.size() == 1) {
-        return readImagePages(files.front(), options);
+    if (paths.size() == 1) {
+        return readImagePages(paths.front(), options);
     }
-    std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) {
-        return naturallyBefore(a.filename().string(), b.filename().string());
-    });
-    std::vector<Page> pages;
-    for (const std::filesystem::path& file : files) {
-        pages.push_back({file, 0});
+    sortByNames(paths);
+    if (const Result<void> alike = checkOneSeries(folder, paths); !alike) {
+        return tl::unexpected(alike.error());
     }
-    Result<Volume> volume = readPages(pages);
+    Result<std::vector<StackFile>> files = lookAt(paths, options);
+    if (!files) {
+        return tl::unexpected(files.error());
+    }
+    Result<Volume> volume = readSlices(std::move(*files), options);
     if (volume) {
         volume->name = folder.filename().string();
     }

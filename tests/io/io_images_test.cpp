@@ -83,7 +83,8 @@ TEST_F(ImagesTest, resolutionTagsGiveTheSpacingInThePlane) {
     const Result<Volume> inch =
         loadVolume(writePages<float>("a.tif", TypeDesc::FLOAT, kDims.x, "in"));
     ASSERT_LOADED(inch);
-    expectGeometry(*inch, {25.4 / 50, 25.4 / 25, 1}, {0, 0, 0});
+    expectGeometry(*inch, {1, 1, 1}, {0, 0, 0}); // as for print
+    EXPECT_EQ(inch->notes.size(), 1U);
     const Result<Volume> centimetre =
         loadVolume(writePages<float>("b.tif", TypeDesc::FLOAT, kDims.x, "cm"));
     ASSERT_LOADED(centimetre);
@@ -153,6 +154,98 @@ TEST_F(ImagesTest, truncatedFilesAreNamed) {
     std::filesystem::remove(path);
     truncate(png, std::filesystem::file_size(png) - 30); // the end mark and some pixels
     expectFailure(loadVolume(folder_), ErrorCode::FileTruncated, "z1.png", "fetch");
+}
+
+/// As a printer's program would write it: 8 bits, with a resolution.
+void writeJpeg(const std::filesystem::path& path, int size, const char* unit = "",
+               float resolution = 0.0F) {
+    OIIO::ImageSpec spec(size, size, 1, TypeDesc::UINT8);
+    spec.attribute("XResolution", resolution);
+    spec.attribute("YResolution", resolution);
+    spec.attribute("ResolutionUnit", unit);
+    std::vector<std::uint8_t> pixels;
+    for (int i = 0; i < size * size; ++i) {
+        pixels.push_back(static_cast<std::uint8_t>(i * 7919 % 251));
+    }
+    const auto file = OIIO::ImageOutput::create(path.string());
+    ASSERT_TRUE(file && file->open(path.string(), spec));
+    ASSERT_TRUE(file->write_image(TypeDesc::UINT8, pixels.data()));
+    file->close();
+}
+
+std::string contentOf(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST_F(ImagesTest, cutJpegsAreNamed) {
+    for (const char* name : {"s0.jpg", "s1.jpg", "s2.jpg"}) {
+        writeJpeg(at(name), 64);
+    }
+    ASSERT_LOADED(loadVolume(folder_));
+    const std::string whole = contentOf(at("s2.jpg"));
+    write("s2.jpg", whole + std::string(100, '\0')); // what follows the end does not matter
+    ASSERT_LOADED(loadVolume(folder_));
+    for (const int percent : {20, 60, 99}) {
+        for (const int zeros : {0, 500}) { // the rest of a copy that was made room for
+            SCOPED_TRACE(percent);
+            write("s2.jpg",
+                  whole.substr(0, whole.size() * percent / 100) + std::string(zeros, '\0'));
+            expectFailure(loadVolume(folder_), ErrorCode::FileTruncated, "s2.jpg",
+                          "was cut off; fetch it again");
+        }
+    }
+}
+
+TEST_F(ImagesTest, cutPngsAreNamed) {
+    writePage<std::uint16_t>("s0.png", 0, TypeDesc::UINT16, 64);
+    const auto path = writePage<std::uint16_t>("s1.png", 1, TypeDesc::UINT16, 64);
+    const std::string whole = contentOf(path);
+    for (const std::size_t kept : {whole.size() - 1, whole.size() - 12, whole.size() / 2,
+                                   whole.size() / 4, std::size_t{20}}) {
+        write("s1.png", whole.substr(0, kept));
+        expectFailure(loadVolume(folder_), ErrorCode::FileTruncated, "s1.png", "fetch");
+    }
+}
+
+TEST_F(ImagesTest, resolutionsOfPrintAreNoVoxels) {
+    writeJpeg(at("s0.jpg"), 8, "in", 300.0F);
+    writeJpeg(at("s1.jpg"), 8, "in", 300.0F);
+    const Result<Volume> volume = loadVolume(folder_);
+    ASSERT_LOADED(volume);
+    expectNear(volume->geometry.spacingMm, {1, 1, 1});
+    ASSERT_EQ(volume->notes.size(), 1U);
+    EXPECT_NE(volume->notes[0].find("300 x 300 dots per inch"), std::string::npos);
+    const Result<Volume> given = loadVolume(folder_, {.spacingMm = glm::dvec3(1, 2, 3)});
+    ASSERT_LOADED(given);
+    EXPECT_TRUE(given->notes.empty());
+}
+
+TEST_F(ImagesTest, greyOfFewerValuesIsReadAsStored) {
+    for (int z = 0; z < 2; ++z) {
+        std::string pixels;
+        for (int i = 0; i < 8; ++i) {
+            const int value = 512 * i + z; // of 12 bits
+            pixels += {static_cast<char>(value >> 8), static_cast<char>(value)};
+        }
+        write("s" + std::to_string(z) + ".pgm", "P5\n# by hand\n4 2\n4095\n" + pixels);
+    }
+    const Result<Volume> volume = loadVolume(folder_);
+    ASSERT_LOADED(volume);
+    for (int i = 0; i < 8; ++i) {
+        EXPECT_EQ(volume->valueAt({i % 4, i / 4, 1}), 512 * i + 1);
+    }
+}
+
+TEST_F(ImagesTest, theOddOneOfAFolderIsNamed) {
+    writePage<std::uint8_t>("a1.png", 0, TypeDesc::UINT8, 6);
+    for (const char* name : {"a2.png", "a3.png", "a4.png"}) {
+        writePage<std::uint8_t>(name, 1, TypeDesc::UINT8);
+    }
+    expectFailure(loadVolume(folder_), ErrorCode::InvalidGeometry, "a1.png: 6 x 4 pixels",
+                  "take away");
+    std::filesystem::rename(at("a1.png"), at("overview.png"));
+    expectFailure(loadVolume(folder_), ErrorCode::AmbiguousSeries, "overview.png", "take away");
 }
 
 } // namespace
