@@ -105,11 +105,11 @@ Result<void> checkFiles(const std::string& path, const FileHeader& header, std::
 
 Placement placementOf(const glm::dmat3& stepsMm, glm::dvec3 originMm) {
     Placement placement;
-    placement.originMm = originMm;
+    placement.originMm = originMm + 0.0; // no zeros below zero
     for (int axis = 0; axis < 3; ++axis) {
         const double length = glm::length(stepsMm[axis]);
         placement.spacingMm[axis] = length;
-        placement.direction[axis] = stepsMm[axis] / length;
+        placement.direction[axis] = stepsMm[axis] / length + 0.0;
     }
     return placement;
 }

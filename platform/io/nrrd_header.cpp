@@ -341,6 +341,19 @@ Result<std::vector<double>> perAxis(const Path& path, const TextHeader& text,
     return values;
 }
 
+/// Of `space origin`, in LPS and mm; 0, 0, 0 where it is not there.
+glm::dvec3 spaceOrigin(FileHeader& header, const TextHeader& text, const Space& space,
+                       const glm::dvec3& millimetres) {
+    const std::vector<Vector> origins = parseVectors(text.findOr({"space origin"}, ""));
+    const glm::dvec3 origin =
+        !origins.empty() && origins[0] ? spaceOf(*origins[0]) : glm::dvec3(0.0);
+    if (!std::isfinite(origin.x + origin.y + origin.z)) {
+        header.notes.emplace_back("its 'space origin' holds no finite numbers; taken as 0, 0, 0");
+        return glm::dvec3(0.0);
+    }
+    return space.signs * millimetres * origin;
+}
+
 /// By `space directions` and `space origin`.
 Result<Placement> placeInSpace(const Path& path, FileHeader& header, const TextHeader& text,
                                const std::vector<Axis>& axes, std::size_t rank) {
@@ -364,16 +377,28 @@ Result<Placement> placeInSpace(const Path& path, FileHeader& header, const TextH
         header.spacings.push_back(std::sqrt(glm::dot(step, step)));
         steps[axis] = space.signs * millimetres * step;
     }
-    const std::vector<Vector> origins = parseVectors(text.findOr({"space origin"}, ""));
-    glm::dvec3 origin{0.0};
-    if (!origins.empty() && origins[0]) {
-        origin = spaceOf(*origins[0]);
+    return placementOf(steps, spaceOrigin(header, text, space, millimetres));
+}
+
+/// Axes that have a space and no directions in it run along its own.
+Placement placeAlongSpace(FileHeader& header, const TextHeader& text, const glm::dmat3& steps,
+                          const glm::dvec3& origin) {
+    const Space space = parseSpace(text);
+    const std::vector<double> units = unitsOf(header, text, "space units", 3);
+    if (!space.note.empty()) {
+        header.notes.push_back(space.note);
+    } else if (space.signs != glm::dvec3(1.0)) {
+        header.notes.emplace_back("has no 'space directions'; its axes are taken along those of "
+                                  "its space");
     }
-    if (!std::isfinite(origin.x + origin.y + origin.z)) {
-        header.notes.emplace_back("its 'space origin' holds no finite numbers; taken as 0, 0, 0");
-        origin = glm::dvec3(0.0);
+    glm::dmat3 turned;
+    for (int axis = 0; axis < 3; ++axis) {
+        turned[axis] = space.signs * steps[axis];
     }
-    return placementOf(steps, space.signs * millimetres * origin);
+    const glm::dvec3 millimetres(units[0], units[1], units[2]);
+    return placementOf(turned, text.find({"space origin"})
+                                   ? spaceOrigin(header, text, space, millimetres)
+                                   : space.signs * origin);
 }
 
 /// By `spacings`, `axis mins`, `axis maxs` and `centers`: samples lie at the nodes of a grid or in
@@ -412,7 +437,8 @@ Result<Placement> placeOnAxes(const Path& path, FileHeader& header, const TextHe
         steps[axis][axis] = units[index] * spacing;
         origin[axis] = units[index] * first;
     }
-    return placementOf(steps, origin);
+    return text.find({"space"}) ? placeAlongSpace(header, text, steps, origin)
+                                : placementOf(steps, origin);
 }
 
 Result<void> setSource(const Path& path, FileHeader& header, const TextHeader& text,

@@ -101,12 +101,14 @@ struct Wanted {
     }
 };
 
-/// Calls `read(from, count)` for each few MiB of `all` bytes until one fails.
+/// Calls `read(from, count)` for each few MiB of `all` bytes until one fails. What is left out
+/// counts as no progress.
 template <class Read>
-Result<void> inChunks(const Wanted& wanted, std::int64_t all, const Read& read) {
+Result<void> inChunks(const Wanted& wanted, std::int64_t all, bool leftOut, const Read& read) {
     for (std::int64_t from = 0; from < all; from += kChunkBytes) {
-        const Result<void> sound = wanted.tell(from, all).and_then(
-            [&]() { return read(from, std::min(all - from, kChunkBytes)); });
+        const Result<void> sound = wanted.tell(leftOut ? 0 : from, all).and_then([&]() {
+            return read(from, std::min(all - from, kChunkBytes));
+        });
         if (!sound) {
             return sound;
         }
@@ -118,11 +120,12 @@ Result<void> readRaw(std::ifstream& stream, std::int64_t place, std::int64_t fil
                      const Wanted& wanted) {
     stream.seekg(place + wanted.skip);
     const auto size = static_cast<std::int64_t>(wanted.voxels.size());
-    return inChunks(wanted, size, [&](std::int64_t from, std::int64_t count) -> Result<void> {
-        stream.read(reinterpret_cast<char*>(wanted.voxels.data() + from), count);
-        return stream ? Result<void>()
-                      : tooShort(wanted.name, wanted.file, wanted.bytes, fileBytes);
-    });
+    return inChunks(wanted, size, false,
+                    [&](std::int64_t from, std::int64_t count) -> Result<void> {
+                        stream.read(reinterpret_cast<char*>(wanted.voxels.data() + from), count);
+                        return stream ? Result<void>()
+                                      : tooShort(wanted.name, wanted.file, wanted.bytes, fileBytes);
+                    });
 }
 
 tl::unexpected<Error> damaged(const Wanted& wanted, const char* how) {
@@ -161,16 +164,17 @@ Result<void> readDeflated(const VoxelSource& source, std::ifstream& stream, std:
         return damaged(wanted, "compressed");
     }
     Inflater inflater(stream, source.deflatedBytes);
-    const auto pass = [&](std::byte* place1, std::int64_t size) {
-        return inChunks(wanted, size, [&](std::int64_t from, std::int64_t count) -> Result<void> {
-            const bool whole = inflater.take(place1 ? place1 + from : nullptr, count) == count;
+    const auto take = [&](std::byte* to, std::int64_t size) {
+        const auto some = [&](std::int64_t from, std::int64_t count) -> Result<void> {
+            const bool whole = inflater.take(to ? to + from : nullptr, count) == count;
             return whole ? Result<void>() : damaged(wanted, "compressed");
-        });
+        };
+        return inChunks(wanted, size, to == nullptr, some);
     };
     const auto size = static_cast<std::int64_t>(wanted.voxels.size());
-    return pass(nullptr, *begin + wanted.skip)
-        .and_then([&]() { return pass(wanted.voxels.data(), size); })
-        .and_then([&]() { return pass(nullptr, wanted.bytes - wanted.skip - size); })
+    return take(nullptr, *begin + wanted.skip)
+        .and_then([&]() { return take(wanted.voxels.data(), size); })
+        .and_then([&]() { return take(nullptr, wanted.bytes - wanted.skip - size); })
         .and_then([&]() -> Result<void> {
             while (inflater.goesOn()) { // to the checksum, whatever else is there
                 inflater.take(nullptr, kChunkBytes);
@@ -191,12 +195,12 @@ Result<void> readText(std::ifstream& stream, StoredType type, const Wanted& want
                                              wanted.file.string(), error.detail)};
     };
     const auto size = static_cast<std::int64_t>(wanted.voxels.size());
-    return inChunks(wanted, wanted.skip,
+    return inChunks(wanted, wanted.skip, true,
                     [&](std::int64_t, std::int64_t count) {
                         return text.skip(count / each).map_error(named);
                     })
         .and_then([&]() {
-            return inChunks(wanted, size, [&](std::int64_t from, std::int64_t count) {
+            return inChunks(wanted, size, false, [&](std::int64_t from, std::int64_t count) {
                 return text
                     .take(wanted.voxels.subspan(static_cast<std::size_t>(from),
                                                 static_cast<std::size_t>(count)))

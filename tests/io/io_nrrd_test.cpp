@@ -329,6 +329,16 @@ TEST_F(NrrdTest, unitsOfSpaceScaleSpacingAndOrigin) {
     EXPECT_NE(odd->notes[0].find("'ell'"), std::string::npos) << odd->notes[0];
 }
 
+TEST_F(NrrdTest, axesWithoutDirectionsRunAlongTheirSpace) {
+    Fields fields = {{"space", "left-posterior-superior"},
+                     {"space directions", ""},
+                     {"space origin", "(10,-20,30)"},
+                     {"spacings", "0.5 2 3"}};
+    expectInLps(fields, {0.5, 2, 3}, {10, -20, 30}, {1, 1, 1}, at("a.nrrd"));
+    fields["space"] = "RAS";
+    expectInLps(fields, {0.5, 2, 3}, {-10, 20, 30}, {-1, -1, 1}, at("a.nrrd"));
+}
+
 TEST_F(NrrdTest, rangesOfAxesGiveSpacingAndOrigin) {
     Fields fields = {{"space", ""},          {"space directions", ""},
                      {"space origin", ""},   {"axis mins", "1 2 3"},
