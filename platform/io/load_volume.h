@@ -83,7 +83,7 @@ struct LoadOptions {
 /// and y, and 1 mm in depth. What was assumed or left out is in Volume::notes. Peak memory: twice
 /// the voxels. Fails: FileNotFound, FileUnreadable, FileTruncated, UnsupportedType,
 /// UnsupportedDims, EmptyVolume, InvalidGeometry, SizeOverflow, EmptyFolder, AmbiguousSeries,
-/// InvalidArgument (no such series; more raw bytes than the layout asks for). Tested by:
+/// InvalidArgument (no such series or time), Cancelled. Tested by:
 /// io_nrrd_test.cpp, io_nifti_test.cpp, io_meta_test.cpp, io_dicom_test.cpp, io_images_test.cpp,
 /// io_raw_test.cpp
 Result<Volume> loadVolume(const std::filesystem::path& path, const LoadOptions& options = {});

@@ -45,7 +45,7 @@ Result<Volume> readRaw(const std::filesystem::path& path, const LoadOptions& opt
                                fmt::format("{}: {} are missing; correct the layout given with "
                                            "--raw",
                                            asked, -left))
-                        : fail(ErrorCode::InvalidArgument,
+                        : fail(ErrorCode::FileUnreadable,
                                fmt::format("{}: {} are left over; if they are a header, skip it "
                                            "with --skip-bytes {}, else correct the layout",
                                            asked, left, skipBytes + left));

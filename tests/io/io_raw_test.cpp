@@ -66,8 +66,14 @@ TEST_F(RawTest, sizesThatDoNotMatchAreNamed) {
     const auto path = write("a.bin", codes<std::int16_t>());
     expectFailure(loadVolume(path, raw("5x4x4,int16,1x1x1")), ErrorCode::FileTruncated,
                   path.string(), "--raw");
-    expectFailure(loadVolume(path, raw("5x4x2,int16,1x1x1")), ErrorCode::InvalidArgument,
-                  path.string(), "--raw");
+    const LoadOptions less = raw("5x4x2,int16,1x1x1"); // 40 voxels of 60
+    expectFailure(loadVolume(path, less), ErrorCode::FileUnreadable, path.string(),
+                  "--skip-bytes 40");
+    LoadOptions skipped = less;
+    skipped.rawSkipBytes = 40;
+    const Result<Volume> rest = loadVolume(path, skipped);
+    ASSERT_LOADED(rest);
+    EXPECT_EQ(rest->valueAt({0, 0, 0}), codeAt(0, 0, 1));
 }
 
 TEST_F(RawTest, pathsThatLeadNowhereAreNamed) {
