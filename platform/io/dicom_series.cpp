@@ -10,6 +10,7 @@
 
 #include "platform/io/dicom_dataset.h"
 #include "platform/io/parse_text.h"
+#include "platform/io/readers.h"
 
 namespace slabcast {
 
@@ -121,14 +122,19 @@ void add(Content& content, DicomFile file) {
 }
 
 /// `everyFile`: also those that neither mark nor name gives away.
-Content contentOf(Paths files, const LoadOptions& options, bool everyFile) {
+Result<Content> contentOf(Paths files, const LoadOptions& options, bool everyFile) {
     sortNaturally(files);
+    double done = 0.0; // headers are a part of all work, pixels the rest
     std::vector<std::string> keys;
     for (const Selection& selection : options.select) {
         keys.push_back(selection.key);
     }
     Content content;
     for (const std::filesystem::path& path : files) {
+        if (const Result<void> goes = going(options, path, done); !goes) {
+            return tl::unexpected(goes.error());
+        }
+        done += kHeadersShare / static_cast<double>(files.size());
         const bool isMarked = hasDicomMark(path);
         if (!isMarked &&
             (isPlainlyOther(path) || isRemnant(path) || (!everyFile && !hasDicomEnding(path)))) {
@@ -218,13 +224,20 @@ Error withoutImages(const std::filesystem::path& folder, const Content& content)
 
 Result<DicomSeries> findDicomSeries(const std::filesystem::path& folder,
                                     const LoadOptions& options) {
-    Content content = contentOf(filesIn(folder), options, true);
+    Result<Content> found = contentOf(filesIn(folder), options, true);
+    if (!found) {
+        return tl::unexpected(found.error());
+    }
+    Content content = std::move(*found);
     bool isBelow = false;
     if (content.series.empty() && content.broken.empty()) {
-        Content below = contentOf(filesBelow(folder), options, false);
-        isBelow = !below.series.empty() || !below.broken.empty();
+        Result<Content> below = contentOf(filesBelow(folder), options, false);
+        if (!below) {
+            return tl::unexpected(below.error());
+        }
+        isBelow = !below->series.empty() || !below->broken.empty();
         if (isBelow) {
-            content = std::move(below);
+            content = std::move(*below);
         }
     }
     judgeSuspects(content);

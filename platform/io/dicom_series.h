@@ -9,6 +9,9 @@
 
 namespace slabcast {
 
+/// What reading headers takes of all work, for progress.
+inline constexpr double kHeadersShare = 0.3;
+
 /// The files of one series, in natural order of their names.
 struct DicomSeries {
     std::vector<DicomFile> files;

@@ -10,6 +10,7 @@
 #include "core/volume/voxel_dispatch.h"
 #include "platform/io/dicom_choice.h"
 #include "platform/io/parse_text.h"
+#include "platform/io/readers.h"
 
 namespace slabcast {
 
@@ -357,7 +358,7 @@ Result<DicomStack> stackImages(const std::filesystem::path& where, const DicomIm
 }
 
 Result<Volume> resampledEvenly(const std::filesystem::path& where, Volume volume,
-                               const DicomStack& stack) {
+                               const DicomStack& stack, const LoadOptions& options) {
     const std::vector<double>& at = stack.distancesMm;
     double step = at.back();
     for (std::size_t i = 1; i < at.size(); ++i) {
@@ -366,8 +367,9 @@ Result<Volume> resampledEvenly(const std::filesystem::path& where, Volume volume
     constexpr double kMostSlices = 1 << 16;
     const double count = std::floor(at.back() / step + kStepTolerance) + 1;
     const auto slices = static_cast<int>(std::min(count, kMostSlices));
-    Volume even = volume;
-    even.voxels = {};
+    const VoxelBytes voxels = std::move(volume.voxels);
+    volume.voxels = {};
+    Volume even = std::move(volume);
     even.geometry.dims.z = slices;
     even.geometry.spacingMm.z = step;
     const Result<std::int64_t> bytes = checkedByteCount(even.geometry.dims, even.type);
@@ -377,12 +379,12 @@ Result<Volume> resampledEvenly(const std::filesystem::path& where, Volume volume
                                 "slices; export the series again",
                                 where.string(), step, count));
     }
-    even.voxels = VoxelBytes(static_cast<std::size_t>(*bytes));
+    even.voxels = makeVoxels(options, static_cast<std::size_t>(*bytes));
     const std::size_t area = static_cast<std::size_t>(even.geometry.dims.x) *
                              static_cast<std::size_t>(even.geometry.dims.y);
     visitVoxels(even, [&](auto target) {
         using Voxel = typename decltype(target)::value_type;
-        const auto* source = reinterpret_cast<const Voxel*>(volume.voxels.data());
+        const auto* source = reinterpret_cast<const Voxel*>(voxels.data());
         parallelFor(slices, 1, [&](std::int64_t begin, std::int64_t end) {
             for (std::int64_t z = begin; z < end; ++z) {
                 const double mm = std::min(static_cast<double>(z) * step, at.back());

@@ -39,6 +39,6 @@ Result<DicomStack> stackImages(const std::filesystem::path& where, const DicomIm
 /// `volume` has the stack's slices; the result has even ones, at the smallest distance, each a
 /// linear mix of its two neighbours. With a note. Fails: SizeOverflow.
 Result<Volume> resampledEvenly(const std::filesystem::path& where, Volume volume,
-                               const DicomStack& stack);
+                               const DicomStack& stack, const LoadOptions& options);
 
 } // namespace slabcast

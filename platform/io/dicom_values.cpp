@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/volume/voxel_dispatch.h"
+#include "platform/io/readers.h"
 
 namespace slabcast {
 
@@ -137,15 +138,16 @@ struct Stored {
 
 } // namespace
 
-Result<DicomVoxels> DicomVoxels::inside(Volume& volume, const DicomImages& images) {
+Result<DicomVoxels> DicomVoxels::inside(Volume& volume, const DicomImages& images,
+                                        const LoadOptions& options) {
     const Types types = typesFor(images);
     volume.type = types.first;
     const Result<std::int64_t> bytes = checkedByteCount(volume.geometry.dims, volume.type);
     if (!bytes) {
         return tl::unexpected(bytes.error());
     }
-    volume.voxels = VoxelBytes(static_cast<std::size_t>(*bytes));
-    return DicomVoxels(volume, types.widest);
+    volume.voxels = makeVoxels(options, static_cast<std::size_t>(*bytes));
+    return DicomVoxels(volume, types.widest, options);
 }
 
 void DicomVoxels::addPadding(std::size_t voxel) {
@@ -250,8 +252,8 @@ void DicomVoxels::put(std::size_t slice, const DicomImage& image,
 void DicomVoxels::widen(std::size_t slices) {
     Volume wide;
     wide.type = widest_;
-    wide.voxels = VoxelBytes(static_cast<std::size_t>(volume_->geometry.voxelCount()) *
-                             bytesPerVoxel(widest_));
+    wide.voxels = makeVoxels(*options_, static_cast<std::size_t>(volume_->geometry.voxelCount()) *
+                                            bytesPerVoxel(widest_));
     const auto done = static_cast<std::size_t>(volume_->geometry.dims.x) *
                       static_cast<std::size_t>(volume_->geometry.dims.y) * slices;
     visitVoxels(*volume_, [&](auto narrow) {

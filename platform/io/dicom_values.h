@@ -6,6 +6,7 @@
 
 #include "core/volume/volume.h"
 #include "platform/io/dicom_image.h"
+#include "platform/io/load_volume.h"
 
 namespace slabcast {
 
@@ -16,8 +17,9 @@ namespace slabcast {
 class DicomVoxels {
 public:
     /// `volume` has its geometry and gets its type and room for the voxels; all images are of its
-    /// size. Both must outlive it. Fails: SizeOverflow.
-    static Result<DicomVoxels> inside(Volume& volume, const DicomImages& images);
+    /// size. All must outlive it. Fails: SizeOverflow.
+    static Result<DicomVoxels> inside(Volume& volume, const DicomImages& images,
+                                      const LoadOptions& options);
 
     /// Cells as DicomPixels gives them. Where the values outgrow the type, the slices before are
     /// widened, once.
@@ -32,7 +34,8 @@ private:
         std::size_t end;
     };
 
-    DicomVoxels(Volume& volume, VoxelType widest) : volume_(&volume), widest_(widest) {}
+    DicomVoxels(Volume& volume, VoxelType widest, const LoadOptions& options)
+        : volume_(&volume), widest_(widest), options_(&options) {}
     template <class Cell>
     void putCells(std::size_t slice, const DicomImage& image, const Cell* cells);
     template <class Cell, class Voxel>
@@ -42,6 +45,7 @@ private:
 
     Volume* volume_;
     VoxelType widest_; // holds whatever can be stored
+    const LoadOptions* options_;
     double lowest_ = std::numeric_limits<double>::infinity();
     std::vector<Run> padding_;
     std::string paddingText_;

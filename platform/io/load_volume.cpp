@@ -36,15 +36,18 @@ constexpr std::array<Format, 11> kFormats = {{{".nrrd", readNrrd},
 
 Result<Volume> loadFolder(const std::filesystem::path& folder, const LoadOptions& options) {
     std::error_code error;
+    bool hasFolders = false;
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-        if (entry.is_regular_file(error) && !entry.path().filename().string().starts_with('.')) {
+        const bool isHidden = entry.path().filename().string().starts_with('.');
+        if (entry.is_regular_file(error) && !isHidden) {
             files.push_back(entry.path());
         }
+        hasFolders = hasFolders || (entry.is_directory(error) && !isHidden);
     }
     std::vector<std::filesystem::path> images;
     std::copy_if(files.begin(), files.end(), std::back_inserter(images), isImage);
-    if (files.empty()) {
+    if (files.empty() && !hasFolders) {
         return fail(ErrorCode::EmptyFolder,
                     fmt::format("{}: holds no files; name a folder with the slices of one volume",
                                 folder.string()));
@@ -81,6 +84,12 @@ Result<void> checkOpens(const std::filesystem::path& path) {
                     fmt::format("{}: no such file or folder; check the path", path.string()));
     }
     const bool isFolder = std::filesystem::is_directory(path, error);
+    if (!isFolder && !std::filesystem::is_regular_file(path, error)) { // a pipe would be waited for
+        return fail(ErrorCode::FileUnreadable,
+                    fmt::format("{}: is no regular file; write what it gives into one, and name "
+                                "that",
+                                path.string()));
+    }
     const bool opens = isFolder ? (std::filesystem::directory_iterator(path, error), !error)
                                 : std::ifstream(path, std::ios::binary).is_open();
     if (!opens) {

@@ -45,7 +45,8 @@ Result<void> checkSeveral(const std::filesystem::path& where, const DicomImages&
 }
 
 /// Reads image by image, each file once: those of one file follow each other in its own order.
-Result<void> readPixels(const DicomImages& images, DicomVoxels& voxels) {
+Result<void> readPixels(const DicomImages& images, DicomVoxels& voxels,
+                        const LoadOptions& options) {
     std::vector<std::size_t> order(images.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
         order[i] = i;
@@ -57,8 +58,13 @@ Result<void> readPixels(const DicomImages& images, DicomVoxels& voxels) {
     std::optional<DicomPixels> opened;
     const DicomFile* file = nullptr;
     std::vector<std::byte> cells;
+    double done = kHeadersShare;
     for (const std::size_t slice : order) {
         const DicomImage& image = images[slice];
+        if (const Result<void> goes = going(options, image.file->path, done); !goes) {
+            return goes;
+        }
+        done += (1.0 - kHeadersShare) / static_cast<double>(images.size());
         if (image.file != file) {
             Result<DicomPixels> pixels = DicomPixels::open(*image.file);
             if (!pixels) {
@@ -122,13 +128,14 @@ Result<Volume> readImages(const std::filesystem::path& where, const std::vector<
                                                : Modality::Unknown;
     addNotes(volume, *images);
     const Result<void> read =
-        DicomVoxels::inside(volume, *images).and_then([&](DicomVoxels voxels) {
-            return readPixels(*images, voxels);
+        DicomVoxels::inside(volume, *images, options).and_then([&](DicomVoxels voxels) {
+            return readPixels(*images, voxels, options);
         });
     if (!read) {
         return tl::unexpected(read.error());
     }
-    return stack->isEven ? std::move(volume) : resampledEvenly(where, std::move(volume), *stack);
+    return stack->isEven ? std::move(volume)
+                         : resampledEvenly(where, std::move(volume), *stack, options);
 }
 
 std::vector<std::string> keysOf(const LoadOptions& options) {
@@ -148,6 +155,9 @@ Error unreadable(const std::filesystem::path& path, const std::exception& except
 } // namespace
 
 Result<Volume> readDicomFile(const std::filesystem::path& path, const LoadOptions& options) try {
+    if (const Result<void> goes = going(options, path, 0.0); !goes) {
+        return tl::unexpected(goes.error());
+    }
     Result<DicomFile> file = openDicomFile(path, keysOf(options));
     if (!file) {
         return tl::unexpected(file.error());
