@@ -146,6 +146,10 @@ Result<void> going(const LoadOptions& options, const std::filesystem::path& file
     return {};
 }
 
+Result<void> admitted(const LoadOptions& options, const Volume& header) {
+    return options.admit ? options.admit(header) : Result<void>();
+}
+
 VoxelBytes makeVoxels(const LoadOptions& options, std::size_t size) {
     return options.allocate ? options.allocate(size) : VoxelBytes(size);
 }

@@ -72,7 +72,10 @@ struct LoadOptions {
     LoadLimits limits;                                 // in a process of its own
     std::function<void(const LoadProgress&)> progress; // now and then, by the calling thread
     const std::atomic<bool>* cancel = nullptr;         // set: stop soon, with Cancelled
-    std::function<VoxelBytes(std::size_t)> allocate;   // what holds the voxels; empty: VoxelBytes
+    /// Asked before voxels are read, of what is known but them: an error is what reading gives
+    /// then.
+    std::function<Result<void>(const Volume& header)> admit;
+    std::function<VoxelBytes(std::size_t)> allocate; // what holds the voxels; empty: VoxelBytes
 };
 
 /// Reads NRRD (.nrrd, .nhdr), NIfTI-1 (.nii, .nii.gz), MetaImage (.mha, .mhd), DICOM (a folder,

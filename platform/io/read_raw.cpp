@@ -55,6 +55,9 @@ Result<Volume> readRaw(const std::filesystem::path& path, const LoadOptions& opt
     volume.type = layout.type;
     volume.geometry.dims = layout.dims;
     volume.geometry.spacingMm = layout.spacingMm;
+    if (const Result<void> wanted = admitted(options, volume); !wanted) {
+        return tl::unexpected(wanted.error());
+    }
     volume.voxels = makeVoxels(options, static_cast<std::size_t>(*bytes));
     std::ifstream file(path, std::ios::binary);
     file.seekg(options.rawSkipBytes);

@@ -47,6 +47,9 @@ Result<void> readVoxels(const Path& path, const FileHeader& header, std::int64_t
     volume.type = rescaling.changes() ? rescaledType(stored) : stored.type;
     const auto count = static_cast<std::size_t>(volume.geometry.voxelCount());
     const auto storedBytes = static_cast<std::size_t>(bytes);
+    if (const Result<void> wanted = admitted(options, volume); !wanted) {
+        return wanted;
+    }
     volume.voxels = makeVoxels(options, count * bytesPerVoxel(volume.type));
     VoxelSource source = header.source;
     source.bigEndian = header.bigEndian.value_or(false);

@@ -15,6 +15,8 @@ namespace slabcast {
 /// Says that `file` is read now, and how much of all is done; Cancelled where it is to stop.
 /// Readers call it for each file, page or few MiB.
 Result<void> going(const LoadOptions& options, const std::filesystem::path& file, double done);
+/// Whether the volume may be read on. Readers ask before they make room for voxels.
+Result<void> admitted(const LoadOptions& options, const Volume& header);
 /// What a volume's voxels go into.
 VoxelBytes makeVoxels(const LoadOptions& options, std::size_t size);
 

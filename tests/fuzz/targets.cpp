@@ -85,7 +85,7 @@ void packets(std::string_view bytes) {
     apart::decodeRequest(bytes);
     apart::decodeProgress(bytes);
     apart::decodeFailed(bytes);
-    const auto done = apart::decodeDone(bytes);
+    const auto done = apart::decodeVolume(bytes);
     if (done) { // what is taken from another process is checked as a file is
         sound(validated(*done));
     }

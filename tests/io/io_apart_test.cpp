@@ -90,7 +90,7 @@ TEST_F(ApartTest, AReaderThatBreaksIsAnErrorThatNamesTheFile) {
     readWith("exit 0");
     expectFailure(apart::readApart(path, {}), ErrorCode::FileUnreadable, path.string(),
                   "without an answer");
-    readWith("printf '\\002abc' >&3"); // says that it is done, and nothing else
+    readWith("printf '\\003abc' >&3"); // says that it is done, and nothing else
     expectFailure(apart::readApart(path, {}), ErrorCode::FileUnreadable, path.string(),
                   "without an answer");
 }
@@ -111,6 +111,23 @@ TEST_F(ApartTest, CanBeCancelled) {
     const Result<Volume> cancelled = apart::readApart(volume(), options);
     ASSERT_FALSE(cancelled);
     EXPECT_EQ(cancelled.error().code, ErrorCode::Cancelled);
+}
+
+TEST_F(ApartTest, WhatIsNotWantedIsNotRead) {
+    LoadOptions options;
+    options.admit = [](const Volume& header) -> Result<void> {
+        EXPECT_EQ(header.geometry.dims, glm::ivec3(2));
+        EXPECT_EQ(header.type, VoxelType::U8);
+        return fail(ErrorCode::VolumeTooLarge, "too large");
+    };
+    for (const ReadIn process : {ReadIn::OwnProcess, ReadIn::ThisProcess}) {
+        options.process = process;
+        const Result<Volume> refused = process == ReadIn::OwnProcess
+                                           ? apart::readApart(volume(), options)
+                                           : loadVolume(volume(), options);
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().code, ErrorCode::VolumeTooLarge);
+    }
 }
 
 TEST_F(ApartTest, AReaderThatIsNotThereIsNamed) {
@@ -151,12 +168,12 @@ TEST_F(ApartTest, RequestsArriveAsTheyWereSent) {
 TEST_F(ApartTest, PacketsThatEndEarlyOrLateAreNone) {
     Volume volume;
     volume.notes = {"one", "two"};
-    const std::string packet = apart::encodeDone(volume);
-    EXPECT_TRUE(apart::decodeDone(packet));
+    const std::string packet = apart::encodeVolume(apart::Packet::Done, volume);
+    EXPECT_TRUE(apart::decodeVolume(packet));
     for (std::size_t size = 1; size < packet.size(); ++size) {
-        EXPECT_FALSE(apart::decodeDone(packet.substr(0, size))) << size;
+        EXPECT_FALSE(apart::decodeVolume(packet.substr(0, size))) << size;
     }
-    EXPECT_FALSE(apart::decodeDone(packet + "x"));
+    EXPECT_FALSE(apart::decodeVolume(packet + "x"));
     EXPECT_FALSE(apart::kindOf(""));
     EXPECT_FALSE(apart::kindOf("\x7f"));
 }

@@ -217,12 +217,21 @@ Result<Volume> readApart(const std::filesystem::path& path, const LoadOptions& o
             }
             continue;
         }
+        if (kind == Packet::Header) {
+            const std::optional<Volume> header = decodeVolume(received.packet);
+            const Result<void> wanted =
+                header && options.admit ? options.admit(*header) : Result<void>();
+            if (!wanted) {
+                return tl::unexpected(wanted.error());
+            }
+            continue;
+        }
         const int signal = child->end();
         if (kind == Packet::Failed) {
             return tl::unexpected(decodeFailed(received.packet).value_or(Error{}));
         }
         std::optional<Volume> volume =
-            kind == Packet::Done ? decodeDone(received.packet) : std::nullopt;
+            kind == Packet::Done ? decodeVolume(received.packet) : std::nullopt;
         if (volume) {
             return adopt(std::move(*volume), std::move(file), last).and_then(validated);
         }

@@ -150,9 +150,9 @@ std::optional<LoadProgress> decodeProgress(std::string_view packet) {
     return read.finished(std::move(progress));
 }
 
-std::string encodeDone(const Volume& volume) {
+std::string encodeVolume(Packet kind, const Volume& volume) {
     const auto notes = std::min(volume.notes.size(), kMostNotes);
-    Writer write(Packet::Done);
+    Writer write(kind);
     write(volume.name)(volume.unit)(number(volume.modality))(number(volume.type))(volume.geometry);
     write(volume.rescaleSlope)(volume.rescaleIntercept)(volume.nonFiniteVoxels);
     write(static_cast<std::uint64_t>(volume.voxels.size()))(static_cast<std::uint32_t>(notes));
@@ -162,7 +162,7 @@ std::string encodeDone(const Volume& volume) {
     return std::move(write).bytes();
 }
 
-std::optional<Volume> decodeDone(std::string_view packet) {
+std::optional<Volume> decodeVolume(std::string_view packet) {
     Volume volume;
     std::uint64_t bytes = 0;
     Reader read(packet);

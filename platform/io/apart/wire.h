@@ -15,13 +15,14 @@ namespace slabcast::apart {
 // of SOCK_SEQPACKET. Both ends are of one build; still, the reader is not trusted, since a file may
 // have taken it over: what comes from it is checked as a file is.
 
-enum class Packet : std::uint8_t { Request, Progress, Done, Failed };
+enum class Packet : std::uint8_t { Request, Progress, Header, Done, Failed };
 
 /// A path and how to read it: not `allocate`, `progress`, `cancel` and `process`.
 std::string encodeRequest(const std::string& path, const LoadOptions& options);
 std::string encodeProgress(const LoadProgress& progress);
-/// The volume without its voxels, which travel as a file of memory.
-std::string encodeDone(const Volume& volume);
+/// The volume without its voxels, which travel as a file of memory; `kind`: Header, before they are
+/// read, or Done.
+std::string encodeVolume(Packet kind, const Volume& volume);
 std::string encodeFailed(const Error& error);
 
 struct Request {
@@ -33,7 +34,7 @@ struct Request {
 std::optional<Packet> kindOf(std::string_view packet);
 std::optional<Request> decodeRequest(std::string_view packet);
 std::optional<LoadProgress> decodeProgress(std::string_view packet);
-std::optional<Volume> decodeDone(std::string_view packet);
+std::optional<Volume> decodeVolume(std::string_view packet);
 std::optional<Error> decodeFailed(std::string_view packet);
 
 inline constexpr std::size_t kLongestPacket = 64 * 1024;

@@ -75,10 +75,14 @@ int run() {
     options.progress = [](const LoadProgress& progress) {
         send(kReaderSocket, encodeProgress(progress));
     };
+    options.admit = [](const Volume& header) -> Result<void> { // who does not want it ends this
+        send(kReaderSocket, encodeVolume(Packet::Header, header));
+        return {};
+    };
     Result<Volume> volume = loadVolume(request->path, options);
     if (volume) {
         const int file = sharedFile(volume->voxels);
-        send(kReaderSocket, encodeDone(*volume), file);
+        send(kReaderSocket, encodeVolume(Packet::Done, *volume), file);
     } else {
         send(kReaderSocket, encodeFailed(volume.error()));
     }
