@@ -109,10 +109,16 @@ int compareNumbers(const Part& a, const Part& b) {
     return leftIsBelow ? -order : order;
 }
 
+/// A text with digits behind it stands where its first digit would put it.
+std::string sortedText(const Part& part) {
+    return part.digits.empty() ? part.text : part.text + '0';
+}
+
 bool comesBefore(const Name& a, const Name& b) {
     for (std::size_t i = 0; i < std::min(a.parts.size(), b.parts.size()); ++i) {
-        if (const int order = a.parts[i].text.compare(b.parts[i].text); order != 0) {
-            return order < 0;
+        const int texts = sortedText(a.parts[i]).compare(sortedText(b.parts[i]));
+        if (texts != 0) {
+            return texts < 0;
         }
         if (const int order = compareNumbers(a.parts[i], b.parts[i]); order != 0) {
             return order < 0;
