@@ -26,6 +26,7 @@ build libopenjp2-7-dev       decodes the JPEG 2000 in DICOM
 build libpng-dev             writes PNG
 build libseccomp-dev         holds the program that reads files to reading
 build libtiff-dev            reads TIFF
+build libjpeg-dev            reads JPEG, and tells where one is damaged
 build libopenimageio-dev     reads other images, writes EXR
 build python3-matplotlib     plots of the reports
 test  libgtest-dev           unit tests

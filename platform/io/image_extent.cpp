@@ -114,7 +114,7 @@ ImageExtent extentOf(const std::filesystem::path& path) {
     file.clear();
     if (begin.starts_with("\xFF\xD8\xFF")) {
         file.seekg(2);
-        return {.isWhole = isWholeJpeg(file)};
+        return {.isWhole = isWholeJpeg(file), .isJpeg = true};
     }
     if (begin.starts_with("\x89PNG")) {
         std::error_code error;

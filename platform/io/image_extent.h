@@ -6,6 +6,7 @@ namespace slabcast {
 
 struct ImageExtent {
     bool isWhole = true;
+    bool isJpeg = false;
     int highest = 0; // value that can be stored where the type could hold more, 0: the type's
 };
 

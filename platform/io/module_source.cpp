@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "platform/io/image_extent.h"
+#include "platform/io/image_jpeg.h"
 #include "platform/io/image_module.h"
 #include "platform/io/image_source.h"
 #include "platform/io/parse_text.h"
@@ -48,6 +49,7 @@ public:
                                     path_.string()));
         }
         highest_ = extent.highest;
+        isJpeg_ = extent.isJpeg;
         const Result<const ImageModule*> module = imageModule(path_, ErrorCode::FileUnreadable);
         if (!module) {
             return tl::unexpected(module.error());
@@ -59,7 +61,9 @@ public:
     const ImageFacts& facts() const override { return facts_; }
 
     Result<void> read(std::size_t index, std::byte* target) override {
-        if (const Result<void> opened = file_ ? Result<void>() : openFile(); !opened) {
+        const bool isGreyJpeg = isJpeg_ && channels_ == 1;
+        if (const Result<void> opened = file_ || isGreyJpeg ? Result<void>() : openFile();
+            !opened) {
             return opened;
         }
         const ImageSlice& slice = facts_.slices[index];
@@ -67,7 +71,11 @@ public:
         const std::size_t count = static_cast<std::size_t>(slice.size.x) * slice.size.y;
         std::vector<std::byte> stored(orientation_ == 1 ? 0 : count * voxelBytes);
         std::byte* pixels = orientation_ == 1 ? target : stored.data();
-        if (!module_->read(file_.get(), static_cast<int>(index), channel_, pixels)) {
+        const glm::ivec2 size = storedSize(slice.size);
+        const bool isRead =
+            isGreyJpeg ? readGreyJpeg(path_, size.x, size.y, pixels)
+                       : module_->read(file_.get(), static_cast<int>(index), channel_, pixels);
+        if (!isRead) {
             return fail(ErrorCode::FileTruncated,
                         fmt::format("{}: the pixels end early or are damaged; fetch the file again",
                                     path_.string()));
@@ -148,6 +156,7 @@ private:
         const bool isTransposed = page.orientation >= 5 && page.orientation <= 8;
         if (index == 0) {
             channel_ = static_cast<int>(*channel);
+            channels_ = page.channels;
             orientation_ = page.orientation >= 1 && page.orientation <= 8 ? page.orientation : 1;
             const ImageLengths lengths = lengthsFrom(page.resolution, page.resolutionUnit);
             facts_.spacingMm =
@@ -161,12 +170,16 @@ private:
         return {};
     }
 
+    glm::ivec2 storedSize(glm::ivec2 size) const {
+        return orientation_ >= 5 ? glm::ivec2(size.y, size.x) : size;
+    }
+
     void turn(const std::byte* stored, glm::ivec2 size, std::size_t voxelBytes,
               std::byte* target) const {
-        const glm::ivec2 storedSize = orientation_ >= 5 ? glm::ivec2(size.y, size.x) : size;
-        const Turn turn = turnOf(orientation_, storedSize.x, storedSize.y);
-        for (int y = 0; y < storedSize.y; ++y) {
-            for (int x = 0; x < storedSize.x; ++x) {
+        const glm::ivec2 from = storedSize(size);
+        const Turn turn = turnOf(orientation_, from.x, from.y);
+        for (int y = 0; y < from.y; ++y) {
+            for (int x = 0; x < from.x; ++x) {
                 const std::ptrdiff_t at = turn.at + y * turn.rowStep + x * turn.columnStep;
                 std::memcpy(target + at * static_cast<std::ptrdiff_t>(voxelBytes), stored,
                             voxelBytes);
@@ -179,6 +192,8 @@ private:
     const ImageModule* module_ = nullptr;
     std::unique_ptr<ImageFile, void (*)(ImageFile*) noexcept> file_;
     int highest_ = 0;
+    bool isJpeg_ = false;
+    int channels_ = 1;
     int channel_ = 0;
     int orientation_ = 1; // the first page's
     ImageFacts facts_;

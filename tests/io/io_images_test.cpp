@@ -197,6 +197,19 @@ TEST_F(ImagesTest, cutJpegsAreNamed) {
     }
 }
 
+TEST_F(ImagesTest, jpegsThatLackAPartAreNamed) {
+    for (const char* name : {"s0.jpg", "s1.jpg"}) {
+        writeJpeg(at(name), 64);
+    }
+    const std::string whole = contentOf(at("s1.jpg"));
+    const std::string begin = whole.substr(0, whole.size() * 6 / 10);
+    for (const std::string& rest : {std::string("\xFF\xD9"), whole.substr(whole.size() * 8 / 10)}) {
+        write("s1.jpg", begin + rest);
+        expectFailure(loadVolume(folder_), ErrorCode::FileTruncated, "s1.jpg",
+                      "end early or are damaged; fetch the file again");
+    }
+}
+
 TEST_F(ImagesTest, cutPngsAreNamed) {
     writePage<std::uint16_t>("s0.png", 0, TypeDesc::UINT16, 64);
     const auto path = writePage<std::uint16_t>("s1.png", 1, TypeDesc::UINT16, 64);
