@@ -75,9 +75,9 @@ Result<Placement> readPlacement(const Path& path, FileHeader& header, const Text
         identity[axis * rank + axis] = 1.0;
     }
     const Result<std::vector<double>> origin =
-        numbersOf(path, text, {"offset", "position", "origin"}, rank, std::vector<double>(rank));
+        numbersOf(path, text, {"Offset", "position", "origin"}, rank, std::vector<double>(rank));
     const Result<std::vector<double>> matrix = numbersOf(
-        path, text, {"transformmatrix", "rotation", "orientation"}, rank * rank, identity);
+        path, text, {"TransformMatrix", "rotation", "orientation"}, rank * rank, identity);
     if (!origin || !matrix) {
         return tl::unexpected(origin ? matrix.error() : origin.error());
     }
@@ -115,8 +115,8 @@ Result<void> setSource(const Path& path, FileHeader& header, const TextHeader& t
     const bool local = lowerCase(written) == "local";
     Result<std::vector<Path>> files =
         local ? std::vector<Path>{path} : dataFiles(path, text, written, sizes);
-    const Result<std::int64_t> deflated = parseSkip(path, text, {"compresseddatasize"}, 0);
-    const Result<std::int64_t> skip = parseSkip(path, text, {"headersize"}, -1);
+    const Result<std::int64_t> deflated = parseSkip(path, text, {"CompressedDataSize"}, 0);
+    const Result<std::int64_t> skip = parseSkip(path, text, {"HeaderSize"}, -1);
     if (!files || !deflated || !skip) {
         return tl::unexpected(!files ? files.error() : !skip ? skip.error() : deflated.error());
     }
@@ -136,9 +136,9 @@ Result<void> setSource(const Path& path, FileHeader& header, const TextHeader& t
 
 Result<void> setRescaling(const Path& path, FileHeader& header, const TextHeader& text) {
     const Result<std::vector<double>> slope =
-        numbersOf(path, text, {"elementtointensityfunctionslope"}, 1, {1.0});
+        numbersOf(path, text, {"ElementToIntensityFunctionSlope"}, 1, {1.0});
     const Result<std::vector<double>> offset =
-        numbersOf(path, text, {"elementtointensityfunctionoffset"}, 1, {0.0});
+        numbersOf(path, text, {"ElementToIntensityFunctionOffset"}, 1, {0.0});
     if (!slope || !offset) {
         return tl::unexpected(slope ? offset.error() : slope.error());
     }

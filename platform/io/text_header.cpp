@@ -176,7 +176,7 @@ Result<std::vector<Path>> listedFiles(const Path& path, const TextHeader& text,
 
 std::optional<std::string_view> TextHeader::find(std::initializer_list<const char*> names) const {
     for (const char* name : names) {
-        const auto found = fields.find(name);
+        const auto found = fields.find(lowerCase(name));
         if (found != fields.end()) {
             return found->second;
         }
@@ -293,13 +293,11 @@ Result<std::vector<std::int64_t>> parseIntegers(const Path& path, std::string_vi
 
 Result<std::vector<std::int64_t>> parseSizes(const Path& path, const TextHeader& text,
                                              const char* name, const char* rank) {
-    Result<std::vector<std::int64_t>> sizes =
-        parseIntegers(path, name, text.findOr({lowerCase(name).c_str()}, ""));
+    Result<std::vector<std::int64_t>> sizes = parseIntegers(path, name, text.findOr({name}, ""));
     if (!sizes) {
         return sizes;
     }
-    if (parseInteger(text.findOr({lowerCase(rank).c_str()}, "")) !=
-        static_cast<std::int64_t>(sizes->size())) {
+    if (parseInteger(text.findOr({rank}, "")) != static_cast<std::int64_t>(sizes->size())) {
         return unreadable(path,
                           fmt::format("'{}' and the number of values in '{}' differ", rank, name));
     }

@@ -22,7 +22,7 @@ struct TextHeader {
     std::int64_t bytes = 0;                    // in the file, end of the last line included
     bool ended = false;                        // as the format says, rather than with the text
 
-    /// The value under the first of the names that is there.
+    /// The value under the first of the names, in either case, that is there.
     std::optional<std::string_view> find(std::initializer_list<const char*> names) const;
     std::string_view findOr(std::initializer_list<const char*> names,
                             std::string_view otherwise) const;
