@@ -133,7 +133,17 @@ Result<FramePlan> Stage::decide(const Settings& settings) {
         }
         measurements = std::move(*measured);
     }
-    return slabcast::plan(scene().facts(), settings, device_.caps(), measurements);
+    Result<FramePlan> made =
+        slabcast::plan(scene().facts(), settings, device_.caps(), measurements);
+    if (made && watcher_.say) {
+        const std::vector<ReasonText> texts = explained(*made);
+        for (std::size_t k = 0; k < texts.size(); ++k) {
+            if (isWarning(made->reasons[k].id)) {
+                watcher_.say(texts[k].why);
+            }
+        }
+    }
+    return made;
 }
 
 Result<FramePlan> Stage::plan(const Settings& settings) const {

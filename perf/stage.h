@@ -52,7 +52,8 @@ public:
     /// Of the picture, from the next prepare() on.
     void resize(glm::ivec2 size) { desc_.size = size; }
 
-    /// Decides the plan; measures ratios first where the settings leave the ratio open.
+    /// Decides the plan; measures ratios first where the settings leave the ratio open. What the
+    /// plan warns of is said.
     Result<FramePlan> decide(const Settings& settings);
     /// The plan without measuring: contract as slabcast::plan() without measurements.
     Result<FramePlan> plan(const Settings& settings) const;

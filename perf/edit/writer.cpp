@@ -65,7 +65,8 @@ bool looksAlike(const TransferFunction& a, const TransferFunction& b) {
 
 /// Opaque in the middle of [low, high], shares of the data's range, and nothing outside.
 TransferFunction band(const VolumeStatistics& data, double low, double high, glm::dvec3 color) {
-    const auto at = [&](double share) { return std::lerp(data.min, data.max, share); };
+    const ValueRange shown = data.shown();
+    const auto at = [&](double share) { return std::lerp(shown.min, shown.max, share); };
     char name[64];
     std::snprintf(name, sizeof name, "band %.2f to %.2f", low, high);
     return {.name = name,

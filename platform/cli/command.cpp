@@ -13,8 +13,10 @@ const Option* findOption(const Command& command, std::string_view flag) {
 }
 
 Option& addText(Command& command, Option option, std::string& value) {
-    return addParsed(
-        command, std::move(option), value, [](const std::string& word) { return word; }, "a text");
+    const auto parse = [](const std::string& word) {
+        return word.empty() ? std::nullopt : std::optional(word);
+    };
+    return addParsed(command, std::move(option), value, parse, "a word: give one, or leave it out");
 }
 
 Option& addFlag(Command& command, Option option, bool& value) {

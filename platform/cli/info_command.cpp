@@ -1,5 +1,8 @@
+#include <cmath>
+
 #include <fmt/core.h>
 
+#include "platform/cli/advice.h"
 #include "platform/cli/commands.h"
 #include "platform/json/transfer_json.h"
 
@@ -13,6 +16,15 @@ double mib(std::int64_t bytes) {
 
 const char* modalityName(Modality modality) {
     return modality == Modality::Ct ? "CT" : modality == Modality::Mr ? "MR" : "unknown";
+}
+
+/// Distance of data values that a volume holds apart near this one; 0: any two numbers.
+double resolutionAt(const Volume& volume, double value) {
+    const double slope = std::abs(volume.rescaleSlope);
+    if (!isFloatingPoint(volume.type)) {
+        return 1e-3 * slope;
+    }
+    return volume.type == VoxelType::F32 ? std::ldexp(std::abs(value), -24) : 0.0;
 }
 
 } // namespace
@@ -37,13 +49,16 @@ Result<void> infoCommand(const InputOptions& options) {
         const glm::dvec3 d = g.direction[axis];
         fmt::print("  axis {}     ({:.6g}, {:.6g}, {:.6g})\n", "xyz"[axis], d.x, d.y, d.z);
     }
-    fmt::print("  values     {:.6g} to {:.6g} {}, mean {:.6g}, standard deviation {:.6g}\n", s.min,
-               s.max, volume->unit, s.mean, s.standardDeviation);
+    fmt::print("  values     {} to {} {}, mean {}, standard deviation {:.6g}\n",
+               valueText(s.min, resolutionAt(*volume, s.min)),
+               valueText(s.max, resolutionAt(*volume, s.max)), volume->unit,
+               valueText(s.mean, 1e-3 * (s.max - s.min)), s.standardDeviation);
     fmt::print("  rescale    value = {:.6g} * voxel + {:.6g}\n", volume->rescaleSlope,
                volume->rescaleIntercept);
     fmt::print("  non-finite {} voxels\n", volume->nonFiniteVoxels);
-    fmt::print("  modality   {}, default transfer function {}\n", modalityName(modality),
-               defaultPresetName(modality, s));
+    const bool guessed = modality != volume->modality;
+    fmt::print("  modality   {}{}, default transfer function {}\n", modalityName(modality),
+               guessed ? " (guessed from the values)" : "", defaultPresetName(modality, s));
     for (const TexelFormat format : {TexelFormat::R8, TexelFormat::R16, TexelFormat::R16F,
                                      TexelFormat::Rg8Exact, TexelFormat::R32fExact}) {
         const Result<MemoryForecast> forecast = forecastMemory(g.dims, volume->type, format);

@@ -1,7 +1,12 @@
+#include <cerrno>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
+#include <iostream>
 #include <new>
 #include <string>
+#include <system_error>
 
 #include <fmt/core.h>
 
@@ -21,6 +26,13 @@ int finished(const Result<void>& result) {
     }
     fmt::print(stderr, "slabcast: {}\n", result.error().detail);
     return result.error().code == ErrorCode::InvalidArgument ? kBadUsage : kFailed;
+}
+
+int unwritten(int error) {
+    return finished(fail(ErrorCode::FileUnwritable,
+                         fmt::format("standard output cannot be written ({}): send it elsewhere, "
+                                     "or make room",
+                                     std::strerror(error != 0 ? error : EIO))));
 }
 
 std::string commandLine(int argc, char** argv) {
@@ -77,12 +89,21 @@ int run(int argc, char** argv) {
     return parsed.command == nullptr ? parsed.status : finished(parsed.command->run());
 }
 
+/// What is still held back is written now, or never: a full disk is no success.
+int withWrittenOutput(int status) {
+    errno = 0;
+    const bool written = std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+    return written || status != kDone ? status : unwritten(errno);
+}
+
 } // namespace
 
 int main(int argc, char** argv) try {
     // EGL's loader else reports on stderr, over several lines, what our own error says in one.
     setenv("EGL_LOG_LEVEL", "fatal", 0);
-    return run(argc, argv);
+    return withWrittenOutput(run(argc, argv));
+} catch (const std::system_error& error) { // of what prints to stdout
+    return unwritten(error.code().value());
 } catch (const std::bad_alloc&) {
     return finished(
         fail(ErrorCode::Internal,

@@ -1,9 +1,22 @@
 #include "platform/cli/open_stage.h"
 
+#include "platform/cli/advice.h"
 #include "platform/cli/progress.h"
 #include "platform/cli/transfer_choice.h"
 
 namespace slabcast {
+
+namespace {
+
+/// Between neighbouring data values of texels; 0 where every voxel is kept exactly.
+double stepOf(const Texels& texels) {
+    const double steps = texels.format == TexelFormat::R8    ? 255.0
+                         : texels.format == TexelFormat::R16 ? 65535.0
+                                                             : 1.0;
+    return texels.maxQuantisationError > 0.0 ? texels.valueScale / steps : 0.0;
+}
+
+} // namespace
 
 StageDesc stageDescOf(const SceneOptions& o) {
     StageDesc desc{.size = o.size,
@@ -33,13 +46,31 @@ Result<Stage> openStage(const Session& session, const InputOptions& input, const
             " voxels are NaN or infinite: treated as the lowest value");
     }
     const VolumeStatistics statistics = computeStatistics(*volume);
+    const Modality modality = likelyModality(*volume, statistics);
     Result<TransferFunction> chosen =
-        chooseTransferFunction(tf, {statistics, volume->unit}, likelyModality(*volume, statistics));
+        chooseTransferFunction(tf, {statistics, volume->unit}, modality);
     if (!chosen) {
         return tl::unexpected(chosen.error());
     }
+    const bool laid = isLaidOverBulk(tf, {statistics, volume->unit}, modality);
     desc.tf = std::move(*chosen);
-    return Stage::open(session.device, std::move(*volume), statistics, std::move(desc), terminal());
+    Result<Stage> stage =
+        Stage::open(session.device, std::move(*volume), statistics, std::move(desc), terminal());
+    if (stage) {
+        const Scene& scene = stage->scene();
+        const PictureSubject subject{.dims = scene.geometry().dims,
+                                     .spacingMm = scene.geometry().spacingMm,
+                                     .statistics = statistics,
+                                     .tf = scene.look().tf,
+                                     .laidOverBulk = laid,
+                                     .texelStep = stepOf(scene.texels()),
+                                     .anythingVisible = scene.facts().anythingVisible,
+                                     .mayBeConstant = input.volume.starts_with("phantom:")};
+        for (const std::string& line : adviceOn(subject)) {
+            say(stage->info().name + ": " + line);
+        }
+    }
+    return stage;
 }
 
 Result<OpenStage> openStage(const SceneOptions& options) {

@@ -17,7 +17,7 @@ namespace slabcast {
 template <class T>
 using Parser = std::function<std::optional<T>(const std::string& word)>;
 
-/// An option that keeps its word as it is.
+/// An option that keeps its word as it is, if that is not empty.
 Option& addText(Command& command, Option option, std::string& value);
 /// An option without a word.
 Option& addFlag(Command& command, Option option, bool& value);

@@ -1,5 +1,6 @@
 #include "platform/cli/session.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +14,26 @@
 
 namespace slabcast {
 
+namespace {
+
+/// Of masked extensions by name; a set of them is of many drivers. In the current context.
+void sayUnknownMasks(const std::string& mask) {
+    const std::vector<std::string> named = gl::parseExtensionMask(mask);
+    const Result<gl::Caps> caps = gl::queryCaps();
+    if (!caps || named == gl::mobileStrictMask()) {
+        return;
+    }
+    for (const std::string& extension : named) {
+        if (!std::binary_search(caps->extensions.begin(), caps->extensions.end(), extension)) {
+            say(fmt::format("SLABCAST_MASK_EXTENSIONS: this driver has no {}; `slabcast device` "
+                            "names what drawing may use",
+                            extension));
+        }
+    }
+}
+
+} // namespace
+
 Result<Session> openSession() {
     Result<EglContext> context = EglContext::create();
     if (!context) {
@@ -25,6 +46,7 @@ Result<Session> openSession() {
     if (!device) {
         return tl::unexpected(device.error());
     }
+    sayUnknownMasks(mask == nullptr ? "" : mask);
     return Session{std::move(*context), std::move(*device)};
 }
 

@@ -13,4 +13,8 @@ namespace slabcast {
 Result<TransferFunction> chooseTransferFunction(const std::string& tf,
                                                 const TransferSubject& subject, Modality modality);
 
+/// Whether what chooseTransferFunction() gives lies elsewhere for outliers of the data
+/// (VolumeStatistics::bulk): it has no values of its own.
+bool isLaidOverBulk(const std::string& tf, const TransferSubject& subject, Modality modality);
+
 } // namespace slabcast

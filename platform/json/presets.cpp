@@ -29,13 +29,14 @@ std::vector<std::string> presetNames() {
 std::string defaultPresetName(Modality modality, const VolumeStatistics& statistics) {
     constexpr double kBoneHu = 300.0;
     constexpr double kAirHu = -900.0;
+    const ValueRange range = statistics.shown();
     if (modality == Modality::Mr) {
         return "mr";
     }
-    if (modality == Modality::Ct && statistics.max >= kBoneHu) {
+    if (modality == Modality::Ct && range.max >= kBoneHu) {
         return "ct-bone";
     }
-    return modality == Modality::Ct && statistics.min <= kAirHu ? "ct-lung" : "linear";
+    return modality == Modality::Ct && range.min <= kAirHu ? "ct-lung" : "linear";
 }
 
 } // namespace slabcast

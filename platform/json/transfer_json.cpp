@@ -142,18 +142,43 @@ double percentile(const VolumeStatistics& statistics, double share) {
     return statistics.min + position * (statistics.max - statistics.min);
 }
 
+/// A fill value stands for nothing: the end value that would hold for it ends shortly beyond the
+/// bulk.
+void hideFills(TransferFunction& tf, const BulkOfValues& bulk) {
+    const double beyond = (bulk.range.max - bulk.range.min) / 64.0;
+    if (bulk.fillAbove && tf.points.back().opacity > 0.0) {
+        TransferPoint end = tf.points.back();
+        end.value = std::max(end.value, bulk.range.max) + beyond;
+        tf.points.push_back(end);
+        end.opacity = 0.0;
+        tf.points.push_back(end);
+    }
+    if (bulk.fillBelow && tf.points.front().opacity > 0.0) {
+        TransferPoint end = tf.points.front();
+        end.value = std::min(end.value, bulk.range.min) - beyond;
+        tf.points.insert(tf.points.begin(), end);
+        end.opacity = 0.0;
+        tf.points.insert(tf.points.begin(), end);
+    }
+}
+
 /// In values of the data.
 TransferFunction absolute(Written written, const VolumeStatistics& statistics) {
     TransferFunction& tf = written.tf;
     if (tf.unit != kRelative) {
         return std::move(tf);
     }
-    const double low = statistics.min;
-    const double high =
-        written.rangeShare < 1.0 ? percentile(statistics, written.rangeShare) : statistics.max;
+    const ValueRange shown = statistics.shown();
+    const double low = shown.min;
+    const double high = written.rangeShare < 1.0
+                            ? std::min(percentile(statistics, written.rangeShare), shown.max)
+                            : shown.max;
     const double span = high > low ? high - low : 1.0; // keeps the points of flat data in order
     for (TransferPoint& point : tf.points) {
         point.value = low + point.value * span;
+    }
+    if (statistics.bulk) {
+        hideFills(tf, *statistics.bulk);
     }
     tf.unit.clear();
     return std::move(tf);

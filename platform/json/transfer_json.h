@@ -20,8 +20,8 @@ struct TransferSubject {
 /// {"name": "CT bone", "unit": "HU", "opacityUnitMm": 1.0,
 ///  "points": [{"value": 150, "color": [0.75, 0.45, 0.30], "opacity": 0.0}, ...]}
 /// `unit` and `opacityUnitMm` may be left out. Under the unit "range" values of 0 to 1 are laid
-/// over [min, max] of the data, or up to the value that `rangeShare` of the voxels do not exceed:
-/// a few bright vessels would darken the rest. What comes back then has values of the data and no
+/// over VolumeStatistics::shown(), or up to the value that `rangeShare` of the voxels do not
+/// exceed: a few bright vessels would darken the rest; fill values are hidden. What comes back then has values of the data and no
 /// unit. Other units are "HU" and the volume's; whether they are the same is the caller's to say.
 /// Fails: InvalidTransferFunction, with `sourceName` and the entry's path, as
 /// "bone.json: points[2].color[1]: 1.4 is outside 0..1"; keys and units that are not known fail

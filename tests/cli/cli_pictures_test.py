@@ -145,6 +145,127 @@ class Inputs(CliTest):
             self.assertIn(expected, text)
 
 
+class Advice(CliTest):
+    """What is said of a picture that is not what a person would expect, one line a cause; nothing of ordinary ones."""
+
+    EDGE = 16
+
+    def ball(self, inside=1.0, outside=0.0, kind="float", code="f", **more):
+        """A ball with an edge of two voxels, from `outside`'s place up to `inside`."""
+        centre = (self.EDGE - 1) / 2
+        def value(i):
+            x, y, z = i % self.EDGE, i // self.EDGE % self.EDGE, i // self.EDGE ** 2
+            r = ((x - centre) ** 2 + (y - centre) ** 2 + (z - centre) ** 2) ** 0.5
+            share = min(1.0, max(0.0, 1.0 - (r - 5.0) / 2.0))
+            return inside * share if share > 0 else outside
+        values = [value(i) for i in range(self.EDGE ** 3)]
+        for at, hot in more.pop("hot", {}).items():
+            values[at] = hot
+        if code != "f":
+            values = [int(v) for v in values]
+        return files.nrrd(f"{self.EDGE} " * 2 + str(self.EDGE), kind=kind, data=struct.pack(f"<{len(values)}{code}", *values), **more)
+
+    def drawn(self, content, *arguments, notes="", tf=None):
+        """The share of the picture's pixels that are lit."""
+        self.write("v.nrrd", content)
+        look = ()
+        if tf is not None:
+            self.write("tf.json", json.dumps({"points": [{"value": v, "color": [1, 1, 1], "opacity": o} for v, o in tf]}))
+            look = ("--tf", "tf.json")
+        png = files.Png(self.picture("v.nrrd", "--size", "48x48", "--layers", "32", "--planes", "1", *look, *arguments, notes=notes))
+        lit = sum(max(png.pixel(x, y)) > 10 for y in range(48) for x in range(48))
+        return lit / 48 ** 2
+
+    BALL = (0.04, 0.6)
+
+    def assert_ball(self, share):
+        self.assertGreater(share, self.BALL[0])
+        self.assertLess(share, self.BALL[1])
+
+    def test_ordinary_pictures_are_silent(self):
+        self.assert_ball(self.drawn(self.ball()))
+        self.assert_ball(self.drawn(self.ball(1000, kind="short", code="h")))
+
+    def test_hot_voxels_leave_the_default_function_on_the_rest(self):
+        laid = r"slabcast: v.nrrd: values reach from 0 to {}, but all except {} lie from 0 to 1000: [^\n]*laid over[^\n]*\n"
+        short = dict(inside=1000, kind="short", code="h")
+        self.assert_ball(self.drawn(self.ball(**short, hot={0: 32767}), notes=laid.format(32767, "one voxel")))
+        self.assert_ball(self.drawn(self.ball(**short, hot={0: 32767, 9: 31000, 99: 20000}), notes=laid.format(32767, "3 voxels")))
+
+    def test_fill_values_are_hidden_or_named(self):
+        exact = ("--exact",)
+        laid = r"slabcast: v.nrrd: values reach [^\n]*laid over[^\n]*\n"
+        fill = r"slabcast: v.nrrd: \d+ voxels hold {}, most likely a fill value[^\n]* 0 {} these, with --exact\n"
+        tf = ((0.2, 0.0), (0.9, 0.5))
+        for value, text in ((9.96921e36, r"9.96921e\+36"), (3.4028234e38, r"3.40282e\+38")):
+            content = self.ball(outside=value)
+            with self.subTest(value):
+                self.drawn(content, tf=tf, notes=fill.format(text, "above") + r"slabcast: v.nrrd: the texels have steps[^\n]*--exact[^\n]*\n")
+                self.assert_ball(self.drawn(content, *exact, notes=laid))
+                self.assert_ball(self.drawn(content, *exact, tf=(*tf, (1.0, 0.5), (1.01, 0.0))))
+        self.assert_ball(self.drawn(self.ball(outside=-9999), *exact, notes=laid))
+
+    def test_texels_too_coarse_for_what_is_shown(self):
+        content, tf = self.ball(hot={0: 1e6}), ((0.2, 0.0), (0.9, 0.5))
+        self.drawn(content, tf=tf, notes=r"slabcast: v.nrrd: the texels have steps of 15\.\d[^\n]*too coarse for those from 0 to 1; --exact[^\n]*\n")
+        self.assert_ball(self.drawn(content, "--exact", tf=tf))
+
+    def test_lengths_that_are_no_millimetres(self):
+        content = self.ball(spacings="0.001 0.001 0.001")
+        self.assertEqual(self.drawn(content, notes=r"slabcast: v.nrrd: opacity is per 1 mm and the box is 0.016 x 0.016 x 0.016 mm: [^\n]*--spacing[^\n]*\n"), 0.0)
+        self.assert_ball(self.drawn(content, "--spacing", "1,1,1"))
+
+    def test_nothing_visible(self):
+        far = r"slabcast: v.nrrd: nothing from 0 to 1 is visible under this transfer function: {}; [^\n]*--tf linear[^\n]*\n"
+        for tf, shows in ((((5000, 0.0), (6000, 0.9)), "it shows values above 5000"),
+                          (((-9, 0.5), (-5, 0.0)), "it shows values below -5"),
+                          (((5, 0.0), (6, 0.9), (7, 0.0)), "it shows 5 to 7"),
+                          (((0, 0.0), (1, 0.0)), "all its opacities are 0")):
+            with self.subTest(shows):
+                self.assertEqual(self.drawn(self.ball(), tf=tf, notes=far.format(shows)), 0.0)
+
+    def test_one_value_everywhere(self):
+        content = files.nrrd(data=bytes([7]) * 512)
+        self.drawn(content, tf=((0, 0.5),), notes=r"slabcast: v.nrrd: all voxels hold 7: [^\n]*check[^\n]*\n")
+        self.drawn(content, tf=((9, 0.0), (10, 0.5)), notes=r"slabcast: v.nrrd: all voxels hold 7, which is not visible [^\n]*above 9;[^\n]*\n")
+
+    def test_what_the_plan_warns_of(self):
+        self.write("v.nrrd", files.nrrd(data=bytes([90, 100] * 256)))
+        self.write("tf.json", json.dumps({"points": [{"value": 50, "color": [1, 1, 1], "opacity": 0.01}]}))
+        layers = ("--size", "32x32", "--tf", "tf.json", "--layers", "128", "--planes", "128")
+        self.picture("v.nrrd", *layers, notes=r"slabcast: even the densest [^\n]*--target rgba16f[^\n]*\n")
+        self.picture("v.nrrd", *layers, "--target", "rgba16f")
+
+
+class Output(CliTest):
+    def test_output_that_cannot_be_written_is_a_failure(self):
+        for arguments in (("device",), ("--help",), ("info", PHANTOM), ("render", PHANTOM, "-o", "p.png", *QUICK, "--explain")):
+            with self.subTest(arguments):
+                run = self.run_cli(*arguments, limit="exec >/dev/full")
+                self.assertEqual(run.returncode, 1, run.stderr)
+                self.assertRegex(run.stderr, r"\Aslabcast: standard output cannot be written \(No space left on device\): [^\n]+\n\Z")
+
+    def test_info_has_all_digits(self):
+        def values(kind, code, *all_values):
+            self.write("v.nrrd", files.nrrd("2 1 1", kind=kind, data=struct.pack(f"<2{code}", *all_values)))
+            return re.search(r"values +(\S+) to (\S+) , mean (\S+),", self.succeeds("info", "v.nrrd")).groups()
+        self.assertEqual(values("int", "i", 16777216, 16777223), ("16777216", "16777223", "16777219.5"))
+        self.assertEqual(values("float", "f", 1e6, 1000001.0)[:2], ("1000000", "1000001"))
+        self.assertEqual(values("float", "f", 0.1, 1e30)[:2], ("0.1", "1e+30"), "the shortest of float32")
+        self.assertEqual(values("double", "d", 0.1, 0.1 + 1e-15)[:2], ("0.1", "0.100000000000001"))
+        self.assertEqual(values("unsigned char", "B", 0, 255), ("0", "255", "127.5"))
+
+    def test_modality_that_is_guessed_is_said_to_be(self):
+        self.write("v.nrrd", files.nrrd("2 1 1", kind="short", data=struct.pack("<2h", -1000, 1000)))
+        self.assertIn("CT (guessed from the values), default", self.succeeds("info", "v.nrrd"))
+        self.assertIn("unknown, default", self.succeeds("info", PHANTOM))
+
+    def test_masked_extensions_that_are_none(self):
+        self.succeeds("device", env={"SLABCAST_MASK_EXTENSIONS": "GL_EXT_nosuch"},
+                      notes=r"slabcast: SLABCAST_MASK_EXTENSIONS: this driver has no GL_EXT_nosuch[^\n]*\n")
+        self.succeeds("device", env={"SLABCAST_MASK_EXTENSIONS": "mobile-strict"})
+
+
 class Statistics(CliTest):
     KEYS = {
         "device": {"renderer", "vendor", "version", "software"},

@@ -5,6 +5,7 @@ usage: cli_refusals_test.py SLABCAST [arguments of unittest]
 """
 
 import json
+import os
 import re
 import sys
 from pathlib import Path
@@ -28,9 +29,9 @@ class BadVolumes(CliTest):
             "type.nrrd": (files.nrrd(kind="quaternion"), "type 'quaternion'", "convert"),
             "type.nii": (files.nifti(kind=32, bits=64), "type", "convert"),
             "zero.nrrd": (files.nrrd("8 0 8"), "dimension of 0", "export"),
-            "four.nrrd": (files.nrrd("8 8 4 2", spacings="1 1 1 1"), "4 dimensions", "extract"),
+            "four.nrrd": (files.nrrd("8 8 4 2", spacings="1 1 1 1"), "2 volumes over time", "--time"),
             "two.nrrd": (files.nrrd("8 64", spacings="1 1"), "2 dimensions", "stack"),
-            "four.nii": (files.nifti((8, 8, 4, 2)), "4 dimensions", "extract"),
+            "four.nii": (files.nifti((8, 8, 4, 2)), "2 volumes over time", "--time"),
             "spacing_0.nrrd": (files.nrrd(spacings="1 0 1"), "spacing of axis 1 is 0", "correct the header"),
             "spacing_nan.nrrd": (files.nrrd(spacings="1 1 nan"), "spacing of axis 2 is nan", "correct the header"),
             "spacing_nan.nii": (files.nifti(spacings=(1, float("nan"), 1)), "spacing", "correct the header"),
@@ -51,10 +52,10 @@ class BadVolumes(CliTest):
             return [(("v.raw", "--raw", layout), cause, remedy) for layout, cause, remedy in cases]
         self.renders_fail(renders((
             ("8x8x8,uint8,1x1x1", "has 100 bytes.* take 512", "correct the layout"),
+            ("4x4x4,uint8,1x1x1", "has 100 bytes.* take 64: 36 are left over", "--skip-bytes 36"),
             ("2000000x2000000x2000000,uint8,1x1x1", "8000000000000000000", "correct the layout"))))
         example = "as 256x256x128,uint16,1x1x1.5"
         self.renders_fail(renders((
-            ("4x4x4,uint8,1x1x1", "has 100 bytes.* take 64", "correct the layout"),
             ("8x8x8", "--raw: .*'8x8x8'", example),
             ("8x8,uint8,1x1x1", "--raw: .*2 dimensions where a volume has three", example),
             ("8x0x8,uint8,1x1x1", "--raw: .*has 0 voxels", "at least one"),
@@ -71,6 +72,10 @@ class BadVolumes(CliTest):
                  ("empty", "holds no files", "name a folder"),
                  ("letters", "holds no DICOM images", "name a folder"))
         self.renders_fail([((place,), f"{place}: {cause}", remedy) for place, cause, remedy in cases])
+
+    def test_pipes_and_devices(self):
+        os.mkfifo(self.folder / "pipe.nrrd")
+        self.renders_fail([((place,), f"{place}: is no regular file", "write") for place in ("/dev/zero", "pipe.nrrd")])
 
     def test_one_of_two_dicom_series_is_to_be_named(self):
         for series in ("1.2.3.7", "1.2.3.8"):

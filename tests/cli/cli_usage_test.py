@@ -22,6 +22,7 @@ class BadUsage(CliTest):
             "--planes": ("-1", "many", "1.5", "99999999999999999999"), "--layers": ("0",), "--frames": ("0",),
             "--camera": ("1,2", "nan,2,3", "1,2,inf", "1,2,-1"), "--fov": ("180", "nan"), "--stereo": ("-1", "nan"),
             "--background": ("red", "+12345", "#12345", "##123456"), "--layer-spacing": ("0", "nan"), "--termination": ("0", "2", "nan"),
+            "--tf": ("",), "--series": ("",), "--unit": ("",),
             "--skip": ("octopus",), "--skip-block": ("3",), "--downsample": ("0",), "--gpu-budget": ("nan",),
         }
         self.all_misused([(("render", PHANTOM, "-o", "p.png", flag, word), f"{flag}: '{re.escape(word)}' is not .+")

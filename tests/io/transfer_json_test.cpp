@@ -145,6 +145,27 @@ TEST(TransferJson, filesAreRead) {
               ErrorCode::FileUnreadable);
 }
 
+TEST(TransferJson, relativeValuesAreLaidOverTheBulkAndFillsAreHidden) {
+    VolumeStatistics statistics = kSkewed;
+    statistics.bulk = BulkOfValues{.range = {0.0, 64.0}, .voxelsAbove = 5};
+    const char* text = R"({"unit": "range", "points": [
+        {"value": 0, "color": [1, 1, 1], "opacity": 0.1},
+        {"value": 1, "color": [1, 1, 1], "opacity": 0.5}]})";
+    const auto parsed = [&] { return *parseTransferFunction(text, "t.json", {statistics, ""}); };
+    EXPECT_EQ(parsed().points.size(), 2U);
+    EXPECT_EQ(parsed().points.front().value, 0.0);
+    EXPECT_EQ(parsed().points.back().value, 64.0);
+    EXPECT_EQ(evaluate(parsed(), 412.0).opacity, 0.5) << "a few bright voxels are no fill value";
+    statistics.bulk->fillAbove = true;
+    EXPECT_EQ(evaluate(parsed(), 412.0).opacity, 0.0);
+    EXPECT_EQ(evaluate(parsed(), 64.0).opacity, 0.5);
+    EXPECT_EQ(evaluate(parsed(), -100.0).opacity, 0.1);
+    statistics.bulk->fillBelow = true;
+    EXPECT_EQ(evaluate(parsed(), -100.0).opacity, 0.0);
+    EXPECT_EQ(evaluate(parsed(), 0.0).opacity, 0.1);
+    EXPECT_LE(presetTransferFunction("mr", statistics)->points.back().value, 66.0);
+}
+
 TEST(Presets, allAreValidAndShowSomething) {
     ASSERT_EQ(presetNames(), (std::vector<std::string>{"angio", "ct-bone", "ct-bone-skin",
                                                        "ct-lung", "gap", "linear", "mr"}));
