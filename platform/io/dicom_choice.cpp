@@ -306,6 +306,12 @@ Result<DicomImages> onePerPlace(const std::filesystem::path& where, DicomImages 
                                 const LoadOptions& options) {
     Places places = placesOf(std::move(images));
     const std::size_t most = fullest(places).size();
+    if (places.size() == 1 && most > 1) {
+        return fail(ErrorCode::InvalidGeometry,
+                    fmt::format("{}: all {} images lie at one place, as over time or of one slice, "
+                                "and a volume needs several places; name a series of slices",
+                                where.string(), most));
+    }
     if (most > 1 && !options.time) {
         const std::vector<DicomKey> keys = differingKeys(places);
         return fail(ErrorCode::AmbiguousSeries,

@@ -17,7 +17,8 @@ Result<DicomImages> selectImages(const std::filesystem::path& where, const Dicom
 
 /// The images in order along their normal, one at each place: where several lie there, the
 /// `options.time`-th. Fails: AmbiguousSeries (several, and none chosen: the line tells how many,
-/// what they differ by and what chooses one), InvalidArgument (no such time). Tested by:
+/// what they differ by and what chooses one), InvalidGeometry (all at one place),
+/// InvalidArgument (no such time). Tested by:
 /// io_dicom_choice_test.cpp
 Result<DicomImages> onePerPlace(const std::filesystem::path& where, DicomImages images,
                                 const LoadOptions& options);
