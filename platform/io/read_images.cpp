@@ -26,7 +26,8 @@ Result<std::vector<StackFile>> lookAt(const std::vector<std::filesystem::path>& 
                                       const LoadOptions& options) {
     std::vector<StackFile> files;
     for (const std::filesystem::path& path : paths) {
-        Result<std::unique_ptr<ImageSource>> source = openImage(path, options);
+        Result<std::unique_ptr<ImageSource>> source =
+            going(options, path, 0.0).and_then([&] { return openImage(path, options); });
         if (!source) {
             return tl::unexpected(source.error());
         }
@@ -148,14 +149,22 @@ Result<Volume> readSlices(std::vector<StackFile> files, const LoadOptions& optio
     volume.geometry.dims = dims;
     volume.geometry.spacingMm = facts.spacingMm;
     volume.notes = gatherNotes(files, options);
-    volume.voxels.resize(*bytes);
-    std::byte* target = volume.voxels.data();
+    if (const Result<void> wanted = admitted(options, volume); !wanted) {
+        return tl::unexpected(wanted.error());
+    }
+    volume.voxels = makeVoxels(options, static_cast<std::size_t>(*bytes));
+    const std::size_t sliceBytes = volume.voxels.size() / slices;
+    std::size_t done = 0;
     for (StackFile& file : files) {
         for (std::size_t i = 0; i < file.source->facts().slices.size(); ++i) {
-            if (const Result<void> read = file.source->read(i, target); !read) {
+            const double share = static_cast<double>(done) / static_cast<double>(slices);
+            const Result<void> read = going(options, file.path, share).and_then([&] {
+                return file.source->read(i, volume.voxels.data() + done * sliceBytes);
+            });
+            if (!read) {
                 return tl::unexpected(read.error());
             }
-            target += volume.voxels.size() / slices;
+            ++done;
         }
         file.source->rest();
     }
