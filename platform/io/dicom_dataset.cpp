@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <fstream>
 #include <string_view>
 
@@ -31,6 +32,38 @@ void setUpLibrary() {
 bool endsBehindPixels(DcmDataset& data) {
     const DcmElement* pixels = pixelElement(data);
     return pixels && data.getElement(data.card() - 1) != pixels;
+}
+
+/// Whether the file is long enough for its plain pixels, found by their tag, type and length, or
+/// ends with the mark that ends compressed ones. What follows is junk, of which files have some.
+bool holdsAllPixels(const std::filesystem::path& path, DcmElement& pixels) {
+    constexpr std::size_t kSearchedBytes = 1 << 22; // other elements come first and are small
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes(kSearchedBytes, '\0');
+    file.read(bytes.data(), kSearchedBytes);
+    bytes.resize(static_cast<std::size_t>(file.gcount()));
+    std::error_code ignored;
+    const std::uintmax_t size = std::filesystem::file_size(path, ignored);
+    const std::uint32_t length = pixels.getLengthField();
+    if (length == DCM_UndefinedLength) {
+        const std::size_t last = bytes.find_last_not_of('\0');
+        return size == bytes.size() && last != std::string::npos && last >= 3 &&
+               bytes.compare(last - 3, 4, "\xfe\xff\xdd\xe0") == 0;
+    }
+    std::string lengthBytes;
+    for (int shift = 0; shift < 32; shift += 8) {
+        lengthBytes += static_cast<char>(length >> shift);
+    }
+    const std::string tag = "\xe0\x7f\x10" + std::string(1, '\0'); // (7FE0,0010)
+    for (const std::string& type :
+         {std::string(), std::string("OW\0\0", 4), std::string("OB\0\0", 4)}) {
+        const std::string element = fmt::format("{}{}{}", tag, type, lengthBytes);
+        const std::size_t found = bytes.find(element);
+        if (found != std::string::npos) {
+            return size >= found + element.size() + length;
+        }
+    }
+    return false;
 }
 
 bool isText(const std::string& bytes) {
@@ -91,8 +124,8 @@ Result<DicomDataset> openDicomDataset(const std::filesystem::path& path) try {
     if (loaded.good()) {
         return dataset;
     }
-    if (pixelElement(dataset.data())) {
-        dataset.isWhole = endsBehindPixels(dataset.data());
+    if (DcmElement* pixels = pixelElement(dataset.data())) {
+        dataset.isWhole = endsBehindPixels(dataset.data()) || holdsAllPixels(path, *pixels);
         return dataset;
     }
     if (hasDicomMark(path)) {

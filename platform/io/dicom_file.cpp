@@ -125,11 +125,13 @@ std::optional<std::vector<double>> numbers(const std::string& text) {
     return all;
 }
 
-Error notNumbers(const DicomFile& file, const char* keyword, const std::string& text) {
-    return {ErrorCode::InvalidGeometry,
-            fmt::format("{}: {} is '{}', which are not the numbers it should hold; correct the "
-                        "element or export the file again",
-                        file.path.string(), keyword, oneLine(text))};
+Error notNumbers(const DicomFile& file, const char* keyword, const std::string& text,
+                 std::size_t count) {
+    return {
+        ErrorCode::InvalidGeometry,
+        fmt::format("{}: {} is '{}' and should be {}; correct the element or export the file again",
+                    file.path.string(), keyword, oneLine(text),
+                    count == 1 ? "a number" : fmt::format("{} numbers", count))};
 }
 
 void setFault(DicomFile& file, ErrorCode code, const std::string& why) {
@@ -147,7 +149,7 @@ std::optional<std::vector<double>> take(DicomFile& file, const char* keyword,
     std::optional<std::vector<double>> all = numbers(text);
     if (!all || all->size() != count) {
         if (!file.fault) {
-            file.fault = notNumbers(file, keyword, text);
+            file.fault = notNumbers(file, keyword, text, count);
         }
         return std::nullopt;
     }
@@ -167,7 +169,11 @@ std::optional<glm::dmat2x3> axesOf(DicomFile& file, const std::string& text) {
     if (!(std::abs(row - 1) < kTolerance && std::abs(column - 1) < kTolerance &&
           std::abs(glm::dot(axes[0], axes[1])) < kTolerance)) {
         if (!file.fault) {
-            file.fault = notNumbers(file, "ImageOrientationPatient", text);
+            file.fault = Error{
+                ErrorCode::InvalidGeometry,
+                fmt::format("{}: ImageOrientationPatient is '{}', which are not two directions at "
+                            "right angles; correct the element or export the file again",
+                            file.path.string(), oneLine(text))};
         }
         return std::nullopt;
     }

@@ -168,11 +168,11 @@ Result<Volume> readDicomFile(const std::filesystem::path& path, const LoadOption
     }
     if (!file->fault && file->frames.size() == 1) {
         const std::string why =
-            hasSiblings(*file) ? "name the folder that holds the series"
-                               : "and its folder holds no other of its series: export the whole "
+            hasSiblings(*file) ? "; name the folder that holds the series"
+                               : ", and its folder holds no other of its series; export the whole "
                                  "series into one folder and name that";
         return fail(ErrorCode::UnsupportedDims,
-                    fmt::format("{}: is a single slice; {}", path.string(), why));
+                    fmt::format("{}: is a single slice{}", path.string(), why));
     }
     std::vector<DicomFile> files;
     files.push_back(std::move(*file));

@@ -49,6 +49,16 @@ TEST_F(DicomSeriesTest, damagedFilesAreNamed) {
     }
 }
 
+TEST_F(DicomSeriesTest, junkBehindPixelsIsPassedOver) {
+    for (const std::string& junk : {std::string(37, '\0'), std::string("hello there")}) {
+        writeSlices([](DicomElements&, int) {});
+        std::ofstream(at("1.dcm"), std::ios::binary | std::ios::app) << junk;
+        const Result<Volume> volume = loadVolume(folder_);
+        ASSERT_LOADED(volume);
+        expectCodes(*volume);
+    }
+}
+
 TEST_F(DicomSeriesTest, sliceWithoutPixelsIsNamed) {
     writeSlices([](DicomElements& elements, int z) {
         if (z == 0) {
