@@ -20,7 +20,6 @@ build libcli11-dev           command line
 build nlohmann-json3-dev     JSON: transfer functions, statistics
 build libfmt-dev             text formatting
 build zlib1g-dev             reads the headers of compressed volumes
-build libinsighttoolkit5-dev reads volumes: DICOM, NIfTI, NRRD, MetaImage
 build libdcmtk-dev           reads DICOM
 build libopenjp2-7-dev       decodes the JPEG 2000 in DICOM
 build libpng-dev             writes PNG
