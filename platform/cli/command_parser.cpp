@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
-#include "platform/io/parse_text.h"
+#include "platform/io/base/parse_text.h"
 
 namespace slabcast {
 

@@ -16,6 +16,23 @@ double stepOf(const Texels& texels) {
     return texels.maxQuantisationError > 0.0 ? texels.valueScale / steps : 0.0;
 }
 
+void advise(const SceneOptions& options, const Stage& stage) {
+    const Scene& scene = stage.scene();
+    const VolumeInfo& info = stage.info();
+    const PictureSubject subject{
+        .dims = info.dims,
+        .spacingMm = info.spacingMm,
+        .statistics = scene.statistics(),
+        .tf = scene.look().tf,
+        .laidOverBulk = isLaidOverBulk(options.tf, {scene.statistics(), info.unit}, info.modality),
+        .texelStep = stepOf(scene.texels()),
+        .anythingVisible = scene.facts().anythingVisible,
+        .mayBeConstant = options.input.volume.starts_with("phantom:")};
+    for (const std::string& line : adviceOn(subject)) {
+        say(info.name + ": " + line);
+    }
+}
+
 } // namespace
 
 StageDesc stageDescOf(const SceneOptions& o) {
@@ -52,25 +69,8 @@ Result<Stage> openStage(const Session& session, const InputOptions& input, const
     if (!chosen) {
         return tl::unexpected(chosen.error());
     }
-    const bool laid = isLaidOverBulk(tf, {statistics, volume->unit}, modality);
     desc.tf = std::move(*chosen);
-    Result<Stage> stage =
-        Stage::open(session.device, std::move(*volume), statistics, std::move(desc), terminal());
-    if (stage) {
-        const Scene& scene = stage->scene();
-        const PictureSubject subject{.dims = scene.geometry().dims,
-                                     .spacingMm = scene.geometry().spacingMm,
-                                     .statistics = statistics,
-                                     .tf = scene.look().tf,
-                                     .laidOverBulk = laid,
-                                     .texelStep = stepOf(scene.texels()),
-                                     .anythingVisible = scene.facts().anythingVisible,
-                                     .mayBeConstant = input.volume.starts_with("phantom:")};
-        for (const std::string& line : adviceOn(subject)) {
-            say(stage->info().name + ": " + line);
-        }
-    }
-    return stage;
+    return Stage::open(session.device, std::move(*volume), statistics, std::move(desc), terminal());
 }
 
 Result<OpenStage> openStage(const SceneOptions& options) {
@@ -80,6 +80,7 @@ Result<OpenStage> openStage(const SceneOptions& options) {
     }
     return openStage(*session, options.input, options.tf, stageDescOf(options))
         .map([&](Stage stage) {
+            advise(options, stage);
             return OpenStage{std::move(*session), std::move(stage)};
         });
 }

@@ -19,7 +19,7 @@ StageDesc stageDescOf(const SceneOptions& options);
 Result<Stage> openStage(const Session& session, const InputOptions& input, const std::string& tf,
                         StageDesc desc);
 
-/// Opens the device too.
+/// Opens the device too; says where a picture of it will hardly be what was expected (adviceOn()).
 Result<OpenStage> openStage(const SceneOptions& options);
 
 } // namespace slabcast

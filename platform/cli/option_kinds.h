@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "platform/cli/command.h"
-#include "platform/io/parse_text.h"
+#include "platform/io/base/parse_text.h"
 
 namespace slabcast {
 

@@ -1,5 +1,5 @@
-// OpenImageIO behind the table of platform/io/image_module.h. It decides nothing: what is refused,
-// and in which words, is platform/io's.
+// OpenImageIO behind the table of platform/io/pictures/image_module.h. It decides nothing: what is
+// refused, and in which words, is platform/io's.
 #include <algorithm>
 #include <array>
 #include <exception>
@@ -10,7 +10,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include "platform/io/image_module.h"
+#include "platform/io/pictures/image_module.h"
 
 namespace slabcast {
 

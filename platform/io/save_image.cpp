@@ -6,8 +6,8 @@
 #include <png.h>
 
 #include "platform/io/atomic_file.h"
-#include "platform/io/image_module.h"
-#include "platform/io/parse_text.h"
+#include "platform/io/base/parse_text.h"
+#include "platform/io/pictures/image_module.h"
 
 namespace slabcast {
 

@@ -24,7 +24,7 @@ include=$work/prefix/include/slabcast
 [[ -s $include/slabcast.h && -s $include/platform/egl/egl_context.h ]] || fail "the way in is not installed"
 for internal in core/gl/api.h core/gl/objects.h core/gl/state_guard.h core/scene/scene.h core/scene/gpu_scene.h \
     core/skip/octree.h core/skip/live_skip.h core/draw/renderer.h core/draw/proxy_stack.h core/reference/continuous.h \
-    platform/egl/egl_library.h platform/io/readers.h platform/io/file_header.h platform/json/json_checks.h; do
+    platform/egl/egl_library.h platform/io/base/readers.h platform/io/volumes/file_header.h platform/json/json_checks.h; do
     [[ -e $source/../../$internal ]] || fail "$internal is looked for and is no more: name another"
     [[ ! -e $include/$internal ]] || fail "$internal is installed"
 done

@@ -14,8 +14,8 @@ if [[ $# -gt 0 ]]; then targets=("$@"); else
 fi
 
 # Instrumented: what parses. Everything below it is linked as it ships.
-readonly sources=(tests/fuzz/targets.cpp platform/io/load_words.cpp platform/io/parse_text.cpp platform/io/*header*.cpp
-    platform/io/length_unit.cpp platform/io/apart/wire.cpp platform/json/json_checks.cpp
+readonly sources=(tests/fuzz/targets.cpp platform/io/base/load_words.cpp platform/io/base/parse_text.cpp platform/io/volumes/*header*.cpp
+    platform/io/volumes/length_unit.cpp platform/io/apart/wire.cpp platform/json/json_checks.cpp
     platform/json/transfer_json.cpp platform/cli/edit_script.cpp perf/json.cpp perf/error/error_table_json.cpp)
 readonly flags=(-std=c++20 -O1 -g1 -I. -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all)
 

@@ -9,8 +9,8 @@
 #include "perf/error/error_table_json.h"
 #include "platform/cli/edit_script.h"
 #include "platform/io/apart/wire.h"
-#include "platform/io/file_header.h"
 #include "platform/io/load_volume.h"
+#include "platform/io/volumes/file_header.h"
 #include "platform/json/transfer_json.h"
 
 namespace slabcast {

@@ -1,9 +1,9 @@
 // Headers in memory: no file is there but where one is named.
 #include "tests/support/io_test_support.h"
 
-#include "platform/io/file_header.h"
-#include "platform/io/length_unit.h"
-#include "platform/io/text_header.h"
+#include "platform/io/volumes/file_header.h"
+#include "platform/io/volumes/length_unit.h"
+#include "platform/io/volumes/text_header.h"
 
 namespace slabcast::test {
 namespace {

@@ -1,8 +1,8 @@
 // What file names and descriptions say: no files are needed.
 #include "tests/support/io_test_support.h"
 
-#include "platform/io/image_order.h"
-#include "platform/io/image_statement.h"
+#include "platform/io/pictures/image_order.h"
+#include "platform/io/pictures/image_statement.h"
 
 namespace slabcast::test {
 namespace {

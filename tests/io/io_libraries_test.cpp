@@ -1,7 +1,7 @@
 // A program of its own, for the other importers' tests link OpenImageIO to write what they read.
 #include "tests/support/io_test_support.h"
 
-#include "platform/io/image_module.h"
+#include "platform/io/pictures/image_module.h"
 #include "platform/io/save_image.h"
 
 namespace slabcast::test {

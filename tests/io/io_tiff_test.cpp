@@ -5,7 +5,7 @@
 
 #include <OpenImageIO/imageio.h>
 
-#include "platform/io/readers.h"
+#include "platform/io/base/readers.h"
 
 namespace slabcast::test {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <sstream>
 
-#include "platform/io/inflater.h"
-#include "platform/io/stored_values.h"
-#include "platform/io/voxel_source.h"
-#include "platform/io/voxel_text.h"
+#include "platform/io/volumes/inflater.h"
+#include "platform/io/volumes/stored_values.h"
+#include "platform/io/volumes/voxel_source.h"
+#include "platform/io/volumes/voxel_text.h"
 
 namespace slabcast::test {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "platform/io/load_volume.h"
+#include "platform/io/base/load_options.h"
 
 namespace slabcast::apart {
 

@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/volume/volume.h"
-#include "platform/io/load_volume.h"
+#include "platform/io/base/load_options.h"
 
 namespace slabcast::apart {
 
