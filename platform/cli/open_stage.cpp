@@ -1,5 +1,6 @@
 #include "platform/cli/open_stage.h"
 
+#include "core/scene/memory_forecast.h"
 #include "platform/cli/advice.h"
 #include "platform/cli/progress.h"
 #include "platform/cli/transfer_choice.h"
@@ -51,10 +52,31 @@ StageDesc stageDescOf(const SceneOptions& o) {
     return desc;
 }
 
+namespace {
+
+/// Refuses, before its voxels are read, what no texture of the device or of the budget can hold,
+/// whatever format will be chosen.
+LoadOptions admittingWhatFits(const InputOptions& input, const gl::Caps& caps,
+                              std::optional<std::int64_t> budgetBytes) {
+    LoadOptions load = input.load;
+    load.admit = [&input, &caps, budgetBytes](const Volume& header) -> Result<void> {
+        if (input.cubeEdge > 0 || input.downsample > 1) {
+            return {}; // what is drawn is made of these voxels
+        }
+        const std::int64_t least = bytesPerVoxel(header.type) == 1 ? 1 : 2; // bytes per texel
+        return checkFits(header.geometry.dims, least, caps, budgetBytes);
+    };
+    return load;
+}
+
+} // namespace
+
 Result<Stage> openStage(const Session& session, const InputOptions& input, const std::string& tf,
                         StageDesc desc) {
     const Progress progress("reading " + input.volume);
-    Result<Volume> volume = openVolume(input);
+    InputOptions fitting = input;
+    fitting.load = admittingWhatFits(input, session.device.caps(), desc.gpuBudgetBytes);
+    Result<Volume> volume = openVolume(fitting);
     if (!volume) {
         return tl::unexpected(volume.error());
     }

@@ -22,10 +22,14 @@ struct Format {
     Result<Volume> (*read)(const std::filesystem::path& path, const LoadOptions& options);
 };
 
-constexpr std::array<Format, 11> kFormats = {{{".nrrd", readNrrd},
+constexpr std::array<Format, 15> kFormats = {{{".nrrd", readNrrd},
                                               {".nhdr", readNrrd},
                                               {".nii", readNifti},
                                               {".nii.gz", readNifti},
+                                              {".hdr", readNifti},
+                                              {".img", readNifti},
+                                              {".hdr.gz", readNifti},
+                                              {".img.gz", readNifti},
                                               {".mha", readMetaImage},
                                               {".mhd", readMetaImage},
                                               {".dcm", readDicomFile},

@@ -40,7 +40,7 @@ for example in minimal stereo edit; do
     "$work/build/$example" || fail "$example: the picture is wrong"
 done
 
-# The importers are a part of their own: left out of a build without ITK.
+# The importers are a part of their own: left out of a build without their libraries.
 if [[ -n $(find "$work/prefix" -name 'Slabcast_io.cmake') ]]; then
     printf 'NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n\n1 2 3 4 5 6 7 8\n' >"$work/eight.nrrd"
     "$work/build/import" "$work/eight.nrrd" | tee "$work/log"
