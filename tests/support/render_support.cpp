@@ -10,10 +10,9 @@ namespace slabcast::test {
 namespace {
 
 template <class T>
-void appendVoxel(std::vector<std::byte>& bytes, double value) {
-    const T voxel = static_cast<T>(std::is_integral_v<T> ? std::round(value) : value);
-    const auto* raw = reinterpret_cast<const std::byte*>(&voxel);
-    bytes.insert(bytes.end(), raw, raw + sizeof voxel);
+void putVoxel(VoxelBytes& voxels, std::size_t index, double value) {
+    const T voxel = static_cast<T>(value);
+    std::memcpy(voxels.data() + index * sizeof(T), &voxel, sizeof(T));
 }
 
 /// A target as the plan asks for, bound and cleared.
@@ -34,13 +33,16 @@ Volume makeVolume(glm::ivec3 dims, VoxelType type, const VoxelFormula& formula,
     volume.type = type;
     volume.geometry.dims = dims;
     volume.geometry.spacingMm = spacingMm;
+    volume.voxels = VoxelBytes(std::size_t(volume.geometry.voxelCount()) * bytesPerVoxel(type));
+    std::size_t index = 0;
     for (int z = 0; z < dims.z; ++z) {
         for (int y = 0; y < dims.y; ++y) {
             for (int x = 0; x < dims.x; ++x) {
                 const double value = formula({x, y, z});
-                type == VoxelType::U8    ? appendVoxel<std::uint8_t>(volume.voxels, value)
-                : type == VoxelType::U16 ? appendVoxel<std::uint16_t>(volume.voxels, value)
-                                         : appendVoxel<float>(volume.voxels, value);
+                type == VoxelType::U8    ? putVoxel<std::uint8_t>(volume.voxels, index, value)
+                : type == VoxelType::U16 ? putVoxel<std::uint16_t>(volume.voxels, index, value)
+                                         : putVoxel<float>(volume.voxels, index, value);
+                ++index;
             }
         }
     }

@@ -11,6 +11,7 @@
 
 #include "platform/io/apart/confine.h"
 #include "platform/io/apart/wire.h"
+#include "platform/io/load_volume.h"
 
 namespace slabcast::apart {
 namespace {
