@@ -11,7 +11,7 @@ namespace {
 
 template <class T>
 void putVoxel(VoxelBytes& voxels, std::size_t index, double value) {
-    const T voxel = static_cast<T>(value);
+    const T voxel = static_cast<T>(std::is_integral_v<T> ? std::round(value) : value);
     std::memcpy(voxels.data() + index * sizeof(T), &voxel, sizeof(T));
 }
 
