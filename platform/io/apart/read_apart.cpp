@@ -1,12 +1,13 @@
 #include "platform/io/apart/read_apart.h"
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <vector>
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -47,24 +48,34 @@ private:
     int number_;
 };
 
-/// The folder of the program or library that this code is part of.
-std::filesystem::path ownFolder() {
-    Dl_info info{};
-    std::error_code error;
-    if (dladdr(reinterpret_cast<void*>(&readApart), &info) == 0 || info.dli_fname == nullptr) {
-        return {};
+/// The folders in which the dynamic linker looks for this program's libraries.
+std::vector<std::filesystem::path> libraryFolders() {
+    std::vector<std::filesystem::path> folders;
+#ifdef __GLIBC__ // RTLD_DI_SERINFO is its own
+    void* program = dlopen(nullptr, RTLD_LAZY);
+    Dl_serinfo size{};
+    if (program != nullptr && dlinfo(program, RTLD_DI_SERINFOSIZE, &size) == 0) {
+        std::vector<std::max_align_t> room(size.dls_size / sizeof(std::max_align_t) + 1);
+        auto* info = reinterpret_cast<Dl_serinfo*>(room.data());
+        *info = size;
+        if (dlinfo(program, RTLD_DI_SERINFO, info) == 0) {
+            for (unsigned k = 0; k < info->dls_cnt; ++k) {
+                folders.emplace_back(info->dls_serpath[k].dls_name);
+            }
+        }
     }
-    return std::filesystem::canonical(info.dli_fname, error).parent_path();
+    if (program != nullptr) {
+        dlclose(program);
+    }
+#endif
+    return folders;
 }
 
 Result<std::string> findReader(const std::filesystem::path& path) {
-    const char* named = std::getenv("SLABCAST_READER");
-    const std::array<std::filesystem::path, 2> usual = {
-        ownFolder() / SLABCAST_MODULES_FROM_BIN / "slabcast-read",
-        std::filesystem::path(SLABCAST_MODULES_INSTALLED) / "slabcast-read"};
     const auto runs = [](const std::filesystem::path& file) {
         return access(file.c_str(), X_OK) == 0;
     };
+    const char* named = std::getenv("SLABCAST_READER");
     if (named != nullptr && !runs(named)) {
         return fail(ErrorCode::FileUnreadable,
                     fmt::format("{}: SLABCAST_READER names {}, which is no program; name "
@@ -74,14 +85,16 @@ Result<std::string> findReader(const std::filesystem::path& path) {
     if (named != nullptr) {
         return named;
     }
-    const auto found = std::find_if(usual.begin(), usual.end(), runs);
-    if (found == usual.end()) {
-        return fail(ErrorCode::FileUnreadable,
-                    fmt::format("{}: the program slabcast-read, which reads files, is not in {}; "
-                                "install Slabcast again, or name it in SLABCAST_READER",
-                                path.string(), usual[1].parent_path().string()));
+    for (const std::filesystem::path& folder : libraryFolders()) {
+        if (runs(folder / "slabcast-read")) {
+            return (folder / "slabcast-read").string();
+        }
     }
-    return found->string();
+    return fail(ErrorCode::FileUnreadable,
+                fmt::format("{}: the program slabcast-read, which reads files, is not found; "
+                            "install Slabcast again, name it in SLABCAST_READER, or its folder in "
+                            "LD_LIBRARY_PATH",
+                            path.string()));
 }
 
 /// The running reader. Killed, if need be, and gone with this.
