@@ -55,7 +55,7 @@ if [[ -n $(find "$work/prefix" -name 'Slabcast_io.cmake') ]]; then
 
     slabcast=$work/prefix/bin/slabcast
     ! ldd "$slabcast" | grep OpenImageIO || fail "the program loads OpenImageIO before it is needed"
-    draw=("$slabcast" render phantom:constant:8 --size 8x8 --planes 4 --layers 8 -o)
+    draw=("$slabcast" render phantom:shells:16 --size 8x8 --planes 4 --layers 8 -o)
     "${draw[@]}" "$work/with.exr" >"$work/log"
     [[ -s $work/with.exr ]] || fail "no EXR picture with the module"
     find "$work/prefix" -name 'slabcast_images.so' -delete
