@@ -21,9 +21,12 @@ public:
     explicit VoxelBytes(std::size_t size);
     /// A copy.
     VoxelBytes(std::span<const std::byte> bytes);
-    VoxelBytes(std::initializer_list<std::byte> bytes) : VoxelBytes(std::span(bytes)) {}
-    VoxelBytes(const std::vector<std::byte>& bytes) : VoxelBytes(std::span(bytes)) {}
-    VoxelBytes(const VoxelBytes& other) : VoxelBytes(std::span(other)) {}
+    VoxelBytes(std::initializer_list<std::byte> bytes)
+        : VoxelBytes(std::span<const std::byte>(bytes.begin(), bytes.size())) {}
+    VoxelBytes(const std::vector<std::byte>& bytes)
+        : VoxelBytes(std::span<const std::byte>(bytes.data(), bytes.size())) {}
+    VoxelBytes(const VoxelBytes& other)
+        : VoxelBytes(std::span<const std::byte>(other.data(), other.size())) {}
     VoxelBytes(VoxelBytes&& other) noexcept { swap(other); }
     VoxelBytes& operator=(VoxelBytes other) noexcept {
         swap(other);

@@ -43,15 +43,26 @@ void selections(std::string_view text) {
     sound(parseSelections(text));
 }
 
+/// Of values from 0 to 255.
+TransferSubject subject() {
+    static const VolumeStatistics statistics = [] {
+        VolumeStatistics even;
+        even.max = 255.0;
+        even.mean = 127.0;
+        return even;
+    }();
+    return {statistics, ""};
+}
+
 void transfer(std::string_view text) {
-    sound(parseTransferFunction(text, "fuzzed", {}));
+    sound(parseTransferFunction(text, "fuzzed", subject()));
 }
 
 void editScript(std::string_view text) {
     const auto byName = [](const std::string&) {
         return Result<TransferFunction>(TransferFunction{});
     };
-    sound(parseEditScript(text, "fuzzed", byName, {}));
+    sound(parseEditScript(text, "fuzzed", byName, subject()));
 }
 
 void errorTable(std::string_view text) {

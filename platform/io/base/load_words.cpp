@@ -14,7 +14,7 @@ constexpr const char* kExample =
     "expected DIMS,TYPE,SPACING[,le|be], as 256x256x128,uint16,1x1x1.5";
 
 tl::unexpected<Error> wrong(ErrorCode code, std::string_view text, std::string_view why) {
-    return fail(code, fmt::format("raw layout '{}': {}; {}", text, why, kExample));
+    return fail(code, oneLine(fmt::format("raw layout '{}': {}; {}", text, why, kExample)));
 }
 
 Result<glm::i64vec3> parseDims(std::string_view layout, std::string_view text) {
@@ -94,7 +94,7 @@ Result<std::vector<Selection>> parseSelections(std::string_view text) {
         const std::string_view key = trimmed(part.substr(0, equals));
         if (equals == std::string_view::npos || key.empty()) {
             return fail(ErrorCode::InvalidArgument,
-                        fmt::format("'{}' is not KEY=VALUE, as EchoTime=20", text));
+                        oneLine(fmt::format("'{}' is not KEY=VALUE, as EchoTime=20", text)));
         }
         selections.push_back({std::string(key), std::string(trimmed(part.substr(equals + 1)))});
     }
