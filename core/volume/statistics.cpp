@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "core/base/bits.h"
 #include "core/base/parallel.h"
 #include "core/volume/voxel_dispatch.h"
 
@@ -152,7 +152,7 @@ std::pair<std::size_t, std::size_t> inner(const Counts& counts, std::int64_t out
 /// Of the order of float32: sign, exponent and 7 bits more.
 template <class T>
 std::size_t prefixOf(T voxel) {
-    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(voxel));
+    const auto bits = bitsAs<std::uint32_t>(static_cast<float>(voxel));
     return (bits >> 31 != 0 ? ~bits : bits | 0x80000000U) >> 16;
 }
 
