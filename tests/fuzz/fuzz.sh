@@ -2,7 +2,7 @@
 # Feeds every parser of ours what libFuzzer thinks of, with addresses and undefined operations checked.
 # usage: tests/fuzz/fuzz.sh BUILD FOLDER -runs=N|-max_total_time=SECONDS [TARGET...]
 # BUILD: a build of the project, for the libraries that parsers stand on. FOLDER: keeps what was found interesting, from
-# run to run, and findings. Targets: those of targets.cpp. Prints a line for each: executions, edges covered.
+# run to run, and findings. $SEED: of chance; 0, or none: another in every run. Targets: those of targets.cpp. Prints a line for each: executions, edges covered.
 # Exit status: 0 where nothing was found, 1 where something was, 77 where clang or its libFuzzer is not installed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -48,7 +48,7 @@ for target in "${targets[@]}"; do
     corpus=$folder/corpus/$target
     mkdir -p "$corpus" "$folder/findings/$target"
     cp -n tests/fuzz/seeds/"$target"/* "$corpus" 2>/dev/null || true
-    if ! SLABCAST_FUZZ=$target "$program" "$effort" -print_final_stats=1 -artifact_prefix="$folder/findings/$target/" \
+    if ! SLABCAST_FUZZ=$target "$program" "$effort" -seed="${SEED:-0}" -print_final_stats=1 -artifact_prefix="$folder/findings/$target/" \
         -max_len=4096 -timeout=5 -rss_limit_mb=2048 "$corpus" >"$folder/$target.log" 2>&1; then
         status=1
         grep -aE "ERROR|SUMMARY|runtime error|Test unit written" "$folder/$target.log" | head -n 5 || true
