@@ -35,10 +35,8 @@ for source in "${sources[@]}"; do
     compile "$source" "${objects[-1]}" &
 done
 wait
-libraries=()
-for name in io json perf core; do
-    libraries+=("$(find "$build" -name "libslabcast_$name.a")")
-done
+libraries=("$build/platform/io/libslabcast_io.a" "$build/platform/json/libslabcast_json.a"
+    "$build/perf/libslabcast_perf.a" "$build/core/libslabcast_core.a")
 readonly program=$folder/fuzz
 "$clang" "${flags[@]}" "${objects[@]}" -Wl,--start-group "${libraries[@]}" -Wl,--end-group -lfmt -lz -lpthread -ldl \
     -Wl,--unresolved-symbols=ignore-all -o "$program" # of readers' libraries, which no parser calls
