@@ -34,6 +34,21 @@ void advise(const SceneOptions& options, const Stage& stage) {
     }
 }
 
+/// Refuses, before its voxels are read, what no texture of the device or of the budget can hold,
+/// whatever format will be chosen.
+LoadOptions admittingWhatFits(const InputOptions& input, const gl::Caps& caps,
+                              std::optional<std::int64_t> budgetBytes) {
+    LoadOptions load = input.load;
+    load.admit = [&input, &caps, budgetBytes](const Volume& header) -> Result<void> {
+        if (input.cubeEdge > 0 || input.downsample > 1) {
+            return {}; // what is drawn is made of these voxels
+        }
+        const std::int64_t least = bytesPerVoxel(header.type) == 1 ? 1 : 2; // bytes per texel
+        return checkFits(header.geometry.dims, least, caps, budgetBytes);
+    };
+    return load;
+}
+
 } // namespace
 
 StageDesc stageDescOf(const SceneOptions& o) {
@@ -51,25 +66,6 @@ StageDesc stageDescOf(const SceneOptions& o) {
     }
     return desc;
 }
-
-namespace {
-
-/// Refuses, before its voxels are read, what no texture of the device or of the budget can hold,
-/// whatever format will be chosen.
-LoadOptions admittingWhatFits(const InputOptions& input, const gl::Caps& caps,
-                              std::optional<std::int64_t> budgetBytes) {
-    LoadOptions load = input.load;
-    load.admit = [&input, &caps, budgetBytes](const Volume& header) -> Result<void> {
-        if (input.cubeEdge > 0 || input.downsample > 1) {
-            return {}; // what is drawn is made of these voxels
-        }
-        const std::int64_t least = bytesPerVoxel(header.type) == 1 ? 1 : 2; // bytes per texel
-        return checkFits(header.geometry.dims, least, caps, budgetBytes);
-    };
-    return load;
-}
-
-} // namespace
 
 Result<Stage> openStage(const Session& session, const InputOptions& input, const std::string& tf,
                         StageDesc desc) {

@@ -76,7 +76,7 @@ Result<Volume> loadFile(const std::filesystem::path& path, const LoadOptions& op
     }
     return fail(
         ErrorCode::UnsupportedType,
-        fmt::format("{}: is of no known format; read are .nrrd, .nhdr, .nii, .nii.gz, .mha, "
+        fmt::format("{}: is of no known format; read are .nrrd, .nhdr, .nii, .nii.gz, .hdr, .mha, "
                     ".mhd, .tif, folders of DICOM or images, and plain voxels with --raw",
                     path.string()));
 }

@@ -7,32 +7,16 @@
 
 #include "core/volume/phantoms.h"
 #include "core/volume/statistics.h"
-#include "core/volume/voxel_dispatch.h"
+#include "tests/support/typed_volume.h"
 
 namespace slabcast {
 namespace {
 
-template <class T>
-VoxelType typeOf() {
-    for (int i = 0; i < 8; ++i) {
-        const auto type = static_cast<VoxelType>(i);
-        if (visitVoxelType(type,
-                           []<class U>(std::type_identity<U>) { return std::is_same_v<T, U>; })) {
-            return type;
-        }
-    }
-    ADD_FAILURE();
-    return VoxelType::U8;
-}
+using test::typeOf;
 
 template <class T>
 Volume rowOf(const std::vector<T>& voxels) {
-    Volume volume;
-    volume.type = typeOf<T>();
-    volume.geometry.dims = {static_cast<int>(voxels.size()), 1, 1};
-    volume.voxels.resize(voxels.size() * sizeof(T));
-    std::memcpy(volume.voxels.data(), voxels.data(), volume.voxels.size());
-    return volume;
+    return test::volumeOf({static_cast<int>(voxels.size()), 1, 1}, voxels);
 }
 
 /// So many voxels from `low` to `high`, evenly.

@@ -149,11 +149,12 @@ Result<Child> start(const std::filesystem::path& path) {
     const File theirs(ends[1]);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
+    // First: in a program that closed its standard streams the socket may be one of them.
+    posix_spawn_file_actions_adddup2(&actions, theirs.number(), kReaderSocket);
     // Its libraries' chatter goes nowhere: what matters is in the error that it sends.
     for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
         posix_spawn_file_actions_addopen(&actions, standard, "/dev/null", O_RDWR, 0);
     }
-    posix_spawn_file_actions_adddup2(&actions, theirs.number(), kReaderSocket);
     std::string program = *reader;
     std::array<char*, 2> arguments = {program.data(), nullptr};
     pid_t pid = -1;

@@ -14,7 +14,8 @@ namespace {
 
 /// Longer texts are cut: a packet has an end.
 constexpr std::size_t kLongestText = 8 * 1024;
-constexpr std::size_t kMostNotes = 6;
+constexpr std::size_t kMostNotes = 64;
+constexpr std::size_t kLongestNote = 512;
 
 /// Appends values to a packet.
 class Writer {
@@ -157,7 +158,7 @@ std::string encodeVolume(Packet kind, const Volume& volume) {
     write(volume.rescaleSlope)(volume.rescaleIntercept)(volume.nonFiniteVoxels);
     write(static_cast<std::uint64_t>(volume.voxels.size()))(static_cast<std::uint32_t>(notes));
     for (std::size_t i = 0; i < notes; ++i) {
-        write(volume.notes[i]);
+        write(volume.notes[i].substr(0, kLongestNote));
     }
     return std::move(write).bytes();
 }
