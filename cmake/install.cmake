@@ -27,7 +27,7 @@ foreach(component IN ITEMS core egl json io)
 endforeach()
 
 if(TARGET slabcast_images)
-    install(TARGETS slabcast_images slabcast_read
+    install(TARGETS slabcast_images slabcast_dicom slabcast_read
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/slabcast RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR}/slabcast)
 endif()
 if(TARGET slabcast)

@@ -82,7 +82,9 @@ void confine(const LoadLimits& limits) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
     limit(RLIMIT_CORE, 0);
-    limit(RLIMIT_AS, (limits.memoryBytes > 0 ? limits.memoryBytes : machine) + kLibraryBytes);
+    const std::int64_t memory = limits.memoryBytes > 0 ? limits.memoryBytes : machine;
+    limit(RLIMIT_AS, memory + kLibraryBytes);
+    limit(RLIMIT_FSIZE, memory); // of the file in memory, too, that voxels are handed over in
     refuseCalls();
 }
 

@@ -27,7 +27,9 @@ Result<Volume> readMetaImage(const std::filesystem::path& path, const LoadOption
 Result<Volume> readDicomFile(const std::filesystem::path& path, const LoadOptions& options);
 /// Without `options.series`: the only one.
 Result<Volume> readDicomSeries(const std::filesystem::path& folder, const LoadOptions& options);
-/// Whether any of the files carries DICOM's mark behind its preamble.
+/// Whether the file carries DICOM's mark behind its preamble.
+bool hasDicomMark(const std::filesystem::path& path);
+/// Whether any of the files does.
 bool holdDicom(const std::vector<std::filesystem::path>& files);
 
 /// All pages of one file.

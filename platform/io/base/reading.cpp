@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <array>
+#include <fstream>
+
 #include <fmt/format.h>
 
 #include "platform/io/base/readers.h"
@@ -20,6 +24,18 @@ Result<void> admitted(const LoadOptions& options, const Volume& header) {
 
 VoxelBytes makeVoxels(const LoadOptions& options, std::size_t size) {
     return options.allocate ? options.allocate(size) : VoxelBytes(size);
+}
+
+bool hasDicomMark(const std::filesystem::path& path) {
+    constexpr std::streamoff kPreambleBytes = 128; // DICOM PS3.10, section 7.1
+    std::ifstream file(path, std::ios::binary);
+    std::array<char, 4> mark{};
+    file.seekg(kPreambleBytes).read(mark.data(), mark.size());
+    return file && std::string_view(mark.data(), mark.size()) == "DICM";
+}
+
+bool holdDicom(const std::vector<std::filesystem::path>& files) {
+    return std::any_of(files.begin(), files.end(), hasDicomMark);
 }
 
 } // namespace slabcast

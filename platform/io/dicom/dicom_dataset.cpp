@@ -1,8 +1,8 @@
 #include "platform/io/dicom/dicom_dataset.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <string_view>
 
@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "platform/io/base/parse_text.h"
+#include "platform/io/base/readers.h"
 
 namespace slabcast {
 
@@ -110,7 +111,31 @@ std::string tidyNumbers(const std::string& text) {
     return tidy;
 }
 
+bool dictionaryIsThere() {
+    const bool there = dcmDataDict.rdlock().numberOfEntries() > 0; // read here, if it was not yet
+    dcmDataDict.rdunlock();
+    return there;
+}
+
+bool sayTheirTypes(DcmDataset& data) {
+    return DcmXfer(data.getOriginalXfer()).isExplicitVR();
+}
+
+OFCondition load(DicomDataset& dataset, const std::filesystem::path& path) {
+    dataset.format = std::make_unique<DcmFileFormat>();
+    return dataset.format->loadFile(OFFilename(path.c_str()));
+}
+
 } // namespace
+
+void readDictionary() {
+    if (dictionaryIsThere()) {
+        return;
+    }
+    unsetenv(DCM_DICT_ENVIRONMENT_VARIABLE);
+    dcmDataDict.wrlock().reloadDictionaries(OFTrue, OFTrue);
+    dcmDataDict.wrunlock();
+}
 
 Result<DicomDataset> openDicomDataset(const std::filesystem::path& path) try {
     setUpLibrary();
@@ -119,8 +144,12 @@ Result<DicomDataset> openDicomDataset(const std::filesystem::path& path) try {
         return fail(ErrorCode::FileTruncated,
                     fmt::format("{}: is empty; fetch the file again", path.string()));
     }
-    DicomDataset dataset{std::make_unique<DcmFileFormat>()};
-    const OFCondition loaded = dataset.format->loadFile(OFFilename(path.c_str()));
+    DicomDataset dataset;
+    OFCondition loaded = load(dataset, path);
+    if (!dictionaryIsThere() && (loaded.bad() || !sayTheirTypes(dataset.data()))) {
+        readDictionary();
+        loaded = load(dataset, path);
+    }
     if (loaded.good()) {
         return dataset;
     }
@@ -142,14 +171,6 @@ Result<DicomDataset> openDicomDataset(const std::filesystem::path& path) try {
     return fail(ErrorCode::FileUnreadable,
                 fmt::format("{}: cannot be read as DICOM ({}); fetch the file again", path.string(),
                             exception.what()));
-}
-
-bool hasDicomMark(const std::filesystem::path& path) {
-    constexpr std::streamoff kPreambleBytes = 128; // DICOM PS3.10, section 7.1
-    std::ifstream file(path, std::ios::binary);
-    std::array<char, 4> mark{};
-    file.seekg(kPreambleBytes).read(mark.data(), mark.size());
-    return file && std::string_view(mark.data(), mark.size()) == "DICM";
 }
 
 DcmElement* pixelElement(DcmDataset& data) {

@@ -25,8 +25,10 @@ struct DicomDataset {
 /// from then on. Fails: FileTruncated (empty; cut within its header), FileUnreadable (not DICOM).
 Result<DicomDataset> openDicomDataset(const std::filesystem::path& path);
 
-/// Whether the file carries DICOM's mark behind its preamble.
-bool hasDicomMark(const std::filesystem::path& path);
+/// DCMTK's dictionary of elements is a text that takes 25 ms to read, at its first use. Files whose
+/// elements say their types need none, so slabcast-read begins without; this reads it after all.
+/// Cost: nothing if that is done. Thread: one at a time, as for all reading of DICOM.
+void readDictionary();
 
 /// The pixels' element, plain, of floats or of doubles; null without.
 DcmElement* pixelElement(DcmDataset& data);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "platform/io/base/parse_text.h"
+#include "platform/io/base/readers.h"
 #include "platform/io/dicom/dicom_dataset.h"
 
 namespace slabcast {
@@ -327,6 +328,7 @@ void setProperties(DicomFile& file, const Header& header,
         wanted.emplace_back(key.key.keyword, key.tag);
     }
     for (const std::string& keyword : moreKeys) {
+        readDictionary();
         DcmTag tag;
         if (DcmTag::findTagFromName(keyword.c_str(), tag).good()) {
             wanted.emplace_back(keyword, tag);

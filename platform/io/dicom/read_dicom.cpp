@@ -204,8 +204,4 @@ Result<Volume> readDicomSeries(const std::filesystem::path& folder,
     return tl::unexpected(unreadable(folder, exception));
 }
 
-bool holdDicom(const std::vector<std::filesystem::path>& files) {
-    return std::any_of(files.begin(), files.end(), hasDicomMark);
-}
-
 } // namespace slabcast

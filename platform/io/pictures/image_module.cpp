@@ -1,24 +1,18 @@
 #include "platform/io/pictures/image_module.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
-#include "platform/io/base/parse_text.h"
+#include "platform/io/base/open_module.h"
 
 namespace slabcast {
 
 Result<const ImageModule*> openImageModule(const char* fileName) {
-    void* handle = dlopen(fileName, RTLD_NOW | RTLD_LOCAL);
-    if (handle == nullptr) {
-        return fail(ErrorCode::FileUnreadable,
-                    oneLine(dlerror())); // begins with the name of what is missing
-    }
-    const auto entry = reinterpret_cast<const ImageModule* (*)()>(dlsym(handle, kImageModuleEntry));
-    const ImageModule* module = entry != nullptr ? entry() : nullptr;
-    if (module == nullptr || module->version != ImageModule::kVersion) {
-        return fail(ErrorCode::FileUnreadable, fmt::format("{}: is of another version", fileName));
-    }
-    return module;
+    return openModule(fileName, kImageModuleEntry)
+        .and_then([&](void* symbol) -> Result<const ImageModule*> {
+            const ImageModule* module = reinterpret_cast<const ImageModule* (*)()>(symbol)();
+            const bool ours = module != nullptr && module->version == ImageModule::kVersion;
+            return ours ? Result<const ImageModule*>(module) : otherVersion(fileName);
+        });
 }
 
 Result<const ImageModule*> imageModule(const std::filesystem::path& path, ErrorCode failure) {

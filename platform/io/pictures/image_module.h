@@ -30,13 +30,14 @@ struct ImagePage {
 /// take 0.3 s and 134 MiB, opened on first use, 0.03 s and 23 MiB. Plain types, and nothing thrown.
 /// What fails returns null or false, and lastError() of the same thread says why.
 struct ImageModule {
-    static constexpr std::uint32_t kVersion = 2; // of this layout
+    static constexpr std::uint32_t kVersion = 3; // of this layout
 
     using TakeBytes = void (*)(void* taker, const char* bytes, std::size_t count);
 
     std::uint32_t version;
     const char* (*lastError)() noexcept;
-    ImageFile* (*open)(const char* path) noexcept;
+    /// Of a file's bytes, which stay where they are until it is closed; `path`: for its ending.
+    ImageFile* (*open)(const char* path, const void* bytes, std::size_t count) noexcept;
     void (*close)(ImageFile* file) noexcept;
     /// False also where there is no such page.
     bool (*describe)(ImageFile* file, int index, ImagePage* page) noexcept;
@@ -49,10 +50,8 @@ struct ImageModule {
 /// The module's only symbol, of type `const ImageModule*()`.
 inline constexpr const char* kImageModuleEntry = "slabcastImageModule";
 
-/// Opens the module on first use and never closes it: OpenImageIO keeps threads and exit handlers.
-/// The dynamic linker looks for it, as for every library, in LD_LIBRARY_PATH and along the
-/// program's run path, which CMake sets for `slabcast` and for what links Slabcast::io. Fails:
-/// `failure`, naming `path`, for whose sake it is opened. Tested by: io_libraries_test.cpp,
+/// The module, opened at the first call: OpenImageIO keeps threads and exit handlers, so it stays.
+/// Fails: `failure`, naming `path`, for whose sake it is opened. Tested by: io_libraries_test.cpp,
 /// consumer_test.sh
 Result<const ImageModule*> imageModule(const std::filesystem::path& path, ErrorCode failure);
 

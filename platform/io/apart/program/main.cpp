@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <vector>
 
@@ -69,12 +70,15 @@ int run() {
                    stderr);
         return 1;
     }
+    setenv("DCMDICTPATH", "/dev/null", 0); // until a file needs DCMTK's dictionary: dicom_dataset.h
     confine(request->options.limits);
     LoadOptions& options = request->options;
     options.process = ReadIn::ThisProcess;
     options.allocate = allocateShared;
     options.progress = [](const LoadProgress& progress) {
-        send(kReaderSocket, encodeProgress(progress));
+        if (!send(kReaderSocket, encodeProgress(progress))) {
+            _exit(1); // nobody waits for it any more
+        }
     };
     options.admit = [](const Volume& header) -> Result<void> { // who does not want it ends this
         send(kReaderSocket, encodeVolume(Packet::Header, header));
@@ -83,6 +87,10 @@ int run() {
     Result<Volume> volume = loadVolume(request->path, options);
     if (volume) {
         const int file = sharedFile(volume->voxels);
+        const auto size = static_cast<off_t>(volume->voxels.size());
+        if (file >= 0 && ftruncate(file, size) != 0) { // of narrowed voxels some room is left
+            return 1;
+        }
         send(kReaderSocket, encodeVolume(Packet::Done, *volume), file);
     } else {
         send(kReaderSocket, encodeFailed(volume.error()));
