@@ -46,10 +46,17 @@ Result<Stage> Stage::open(Device device, Volume volume, const VolumeStatistics& 
                     .spacingMm = volume.geometry.spacingMm,
                     .bytes = static_cast<std::int64_t>(volume.voxels.size()),
                     .modality = likelyModality(volume, statistics)};
-    const TextureChoice choice = device.texturesFor(volume.type, statistics, desc.exactTexels);
+    TextureChoice choice = device.texturesFor(volume.type, statistics, desc.exactTexels,
+                                              longestTexelStep(statistics, desc.tf));
+    const auto check = [&] {
+        return checkMemory(info, choice.texels, desc.settings.classification, desc, device.caps());
+    };
+    Result<MemoryForecast> forecast = check();
+    if (!forecast && !desc.exactTexels) { // finer than the format's own steps, where that fits
+        choice = device.texturesFor(volume.type, statistics);
+        forecast = check();
+    }
     info.formatReason = choice.reason;
-    const Result<MemoryForecast> forecast =
-        checkMemory(info, choice.texels, desc.settings.classification, desc, device.caps());
     if (!forecast) {
         return tl::unexpected(forecast.error());
     }
@@ -59,10 +66,14 @@ Result<Stage> Stage::open(Device device, Volume volume, const VolumeStatistics& 
         return tl::unexpected(renderer.error());
     }
     std::optional<Texels> values;
-    if (desc.keepValues) {
-        values = encodeTexels(volume, statistics, TexelFormat::R32fExact);
-    }
-    Result<Scene> scene = Scene::create(std::move(volume), choice);
+    const auto encode = [&] {
+        const ProgressLine line(watcher, "making texels of the voxels");
+        if (desc.keepValues && !keepsEveryVoxel(choice.texels, volume.type)) {
+            values = encodeTexels(volume, statistics, TexelFormat::R32fExact);
+        }
+        return Scene::create(std::move(volume), statistics, choice);
+    };
+    Result<Scene> scene = encode();
     if (!scene) {
         return tl::unexpected(scene.error());
     }

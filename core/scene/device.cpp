@@ -80,10 +80,11 @@ Device::Device(gl::Caps caps, std::vector<TexelFormatTest> formats, DeviceOption
         State{std::move(caps), std::move(formats), quirks, std::move(options.log)});
 }
 
-TextureChoice Device::texturesFor(VoxelType type, const VolumeStatistics& statistics,
-                                  bool exact) const {
+TextureChoice Device::texturesFor(VoxelType type, const VolumeStatistics& statistics, bool exact,
+                                  double longestStep) const {
     TextureChoice choice;
-    choice.texels = chooseTexelFormat(type, statistics, exact, formats(), &choice.reason);
+    choice.texels =
+        chooseTexelFormat(type, statistics, exact, longestStep, formats(), &choice.reason);
     choice.filterErrorOfFullScale = filterErrorOfFullScale(choice.texels);
     choice.maxTableSize = static_cast<int>(std::min(kMaxTableSize, caps().maxTextureSize));
     return choice;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -78,9 +79,11 @@ public:
     std::span<const TexelFormatTest> formats() const { return state_->formats; }
 
     /// The format for such voxels, with what exact skipping must know of its filter.
-    /// `exact`: texels are interpolated in the shader, in float32, whatever the device filters.
+    /// `exact`: texels are interpolated in the shader, in float32, whatever the device filters; so
+    /// they are where those that it filters have steps above `longestStep` (longestTexelStep()).
     TextureChoice texturesFor(VoxelType type, const VolumeStatistics& statistics,
-                              bool exact = false) const;
+                              bool exact = false,
+                              double longestStep = std::numeric_limits<double>::infinity()) const;
 
     /// Of a format's filter, as the self-test found it; 0 of one that was not tested.
     double filterErrorOfFullScale(TexelFormat format) const;

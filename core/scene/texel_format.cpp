@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace slabcast {
 
@@ -88,6 +89,10 @@ std::string whyNot(std::span<const TexelFormatTest> tests, TexelFormat format) {
            (test == nullptr ? "not tested" : test->reason) + ")";
 }
 
+std::string tooLong(double step) {
+    return formatted(" has steps of %.3g, too long for what is shown", step);
+}
+
 /// What a format keeps of voxels wider than eight bits.
 std::string precisionOf(TexelFormat format, bool shortIntegers, double range) {
     if (shortIntegers) {
@@ -128,8 +133,30 @@ TexelFormatTest judgeTexelFormat(TexelFormat format, std::span<const FilterSampl
     return test;
 }
 
+double longestTexelStep(const VolumeStatistics& statistics, const TransferFunction& tf) {
+    constexpr double kStepsOfBulk = 32.0;
+    constexpr double kStepsOfBand = 4.0;
+    const auto ofRange = [](double low, double high, double steps) {
+        return high > low ? (high - low) / steps : std::numeric_limits<double>::infinity();
+    };
+    const ValueRange bulk = statistics.shown();
+    const ValueRange visible = visibleValues(tf).value_or(ValueRange{});
+    return std::min(ofRange(bulk.min, bulk.max, kStepsOfBulk),
+                    ofRange(visible.min, visible.max, kStepsOfBand));
+}
+
+double texelStep(TexelFormat format, VoxelType type, const VolumeStatistics& statistics) {
+    const double levels = format == TexelFormat::R8    ? 255.0
+                          : format == TexelFormat::R16 ? 65535.0
+                                                       : 4096.0;
+    const double range = statistics.max - statistics.min;
+    const bool keepsIntegers = !isFloatingPoint(type) && range <= levels;
+    return isExact(format) || keepsIntegers || bytesPerVoxel(type) == 1 ? 0.0 : range / levels;
+}
+
 TexelFormat chooseTexelFormat(VoxelType type, const VolumeStatistics& statistics, bool exact,
-                              std::span<const TexelFormatTest> tests, std::string* reason) {
+                              double longestStep, std::span<const TexelFormatTest> tests,
+                              std::string* reason) {
     std::string ignored;
     std::string& why = reason == nullptr ? ignored : *reason;
     const bool shortIntegers = !isFloatingPoint(type) && bytesPerVoxel(type) <= 2;
@@ -144,12 +171,14 @@ TexelFormat chooseTexelFormat(VoxelType type, const VolumeStatistics& statistics
     }
     std::string rejected;
     for (const TexelFormat format : {TexelFormat::R16, TexelFormat::R16F}) {
-        if (isUsable(tests, format)) {
+        const double step = texelStep(format, type, statistics);
+        if (isUsable(tests, format) && step <= longestStep) {
             why = std::string(name(format)) + " " +
                   precisionOf(format, shortIntegers, statistics.max - statistics.min) + rejected;
             return format;
         }
-        rejected += "; " + whyNot(tests, format);
+        rejected +=
+            "; " + (isUsable(tests, format) ? name(format) + tooLong(step) : whyNot(tests, format));
     }
     why =
         std::string(name(fetchedFormat(shortIntegers))) + ", interpolated in the shader" + rejected;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/gl/caps.h"
+#include "core/transfer/transfer_function.h"
 #include "core/volume/statistics.h"
 #include "core/volume/texels.h"
 
@@ -49,11 +50,22 @@ TexelFormatTest judgeTexelFormat(TexelFormat format, std::span<const FilterSampl
 /// once per device. Tested by: texel_format_gl_test.cpp
 std::vector<TexelFormatTest> selfTestTexelFormats(const gl::Caps& caps);
 
+/// The longest step between the values of texels that shows what is there: a quarter of what the
+/// transfer function makes visible, and a 32nd of where nearly all voxels lie; infinite where
+/// neither is bounded. Longer ones miss a thin material, or draw terraces. Pure.
+/// Tested by: texel_format_test.cpp
+double longestTexelStep(const VolumeStatistics& statistics, const TransferFunction& tf);
+
+/// Between the values of neighbouring texels; 0 where such voxels are kept as they are.
+double texelStep(TexelFormat format, VoxelType type, const VolumeStatistics& statistics);
+
 /// R8 for 8-bit voxels; for wider ones R16, or R16F where R16 is not usable: R16 keeps every 16-bit
 /// integer and rounds other data 16 times finer. The fetched formats if `exact`, or if nothing else
-/// is usable: two bytes for integers of up to 16 bits, float32 for the rest. Pure. `reason`, if not
-/// null, receives one line. Tested by: texel_format_gl_test.cpp
+/// is usable or has steps of `longestStep` or less: two bytes for integers of up to 16 bits,
+/// float32 for the rest. Pure. `reason`, if not null, receives one line.
+/// Tested by: texel_format_test.cpp, texel_format_gl_test.cpp
 TexelFormat chooseTexelFormat(VoxelType type, const VolumeStatistics& statistics, bool exact,
-                              std::span<const TexelFormatTest> tests, std::string* reason);
+                              double longestStep, std::span<const TexelFormatTest> tests,
+                              std::string* reason);
 
 } // namespace slabcast

@@ -84,6 +84,19 @@ TransferSample evaluate(const TransferFunction& tf, double value) {
     return {glm::mix(below.color, above->color, t), glm::mix(below.opacity, above->opacity, t)};
 }
 
+std::optional<ValueRange> visibleValues(const TransferFunction& tf) {
+    constexpr double kNoEnd = std::numeric_limits<double>::infinity();
+    const auto isVisible = [](const TransferPoint& point) { return point.opacity > 0.0; };
+    const auto& points = tf.points;
+    const auto first = std::find_if(points.begin(), points.end(), isVisible);
+    if (first == points.end()) {
+        return std::nullopt;
+    }
+    const auto last = std::find_if(points.rbegin(), points.rend(), isVisible);
+    return ValueRange{first == points.begin() ? -kNoEnd : (first - 1)->value,
+                      last == points.rbegin() ? kNoEnd : (last - 1)->value};
+}
+
 double extinctionPerMm(double opacity, double opacityUnitMm) {
     return -std::log1p(-opacity) / opacityUnitMm;
 }

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
 
 #include "core/base/error.h"
+#include "core/volume/statistics.h"
 
 namespace slabcast {
 
@@ -39,6 +41,10 @@ struct TransferSample {
 };
 
 TransferSample evaluate(const TransferFunction& tf, double value);
+
+/// From the first value that is visible to the last; infinite where an end value holds on. Nothing
+/// where no opacity is above 0. Tested by: transfer_function_test.cpp
+std::optional<ValueRange> visibleValues(const TransferFunction& tf);
 
 /// -ln(1 - opacity) / opacityUnitMm: the extinction coefficient in 1/mm.
 double extinctionPerMm(double opacity, double opacityUnitMm);

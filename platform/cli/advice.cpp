@@ -8,13 +8,13 @@
 
 #include <fmt/format.h>
 
+#include "core/scene/texel_format.h"
+
 namespace slabcast {
 
 namespace {
 
 constexpr double kFaint = 4.0 / 255.0; // of white: hardly told from black
-constexpr double kStepsOfBulk = 32.0;  // fewer of them within the bulk draw terraces
-constexpr double kStepsOfBand = 4.0;   // fewer of them within all that is visible may miss it
 
 using Line = std::optional<std::string>;
 
@@ -40,21 +40,6 @@ double mostOpacity(const TransferFunction& tf, ValueRange range) {
         }
     }
     return most;
-}
-
-/// From the first value that is visible to the last; infinite where an end value holds on. Nothing
-/// where no opacity is above 0.
-std::optional<ValueRange> visibleValues(const TransferFunction& tf) {
-    constexpr double kNoEnd = std::numeric_limits<double>::infinity();
-    const auto isVisible = [](const TransferPoint& point) { return point.opacity > 0.0; };
-    const auto& points = tf.points;
-    const auto first = std::find_if(points.begin(), points.end(), isVisible);
-    if (first == points.end()) {
-        return std::nullopt;
-    }
-    const auto last = std::find_if(points.rbegin(), points.rend(), isVisible);
-    return ValueRange{first == points.begin() ? -kNoEnd : (first - 1)->value,
-                      last == points.rbegin() ? kNoEnd : (last - 1)->value};
 }
 
 std::string textOfVisible(const TransferFunction& tf) {
@@ -143,20 +128,27 @@ Line unitOfLength(const PictureSubject& s) {
                        std::max(glm::length(box) / 30.0, 1e-6));
 }
 
+/// Finer texels were wanted.
 Line coarseTexels(const PictureSubject& s) {
-    const double step = s.texelStep;
-    const ValueRange bulk = s.statistics.shown();
-    const std::optional<ValueRange> visible = visibleValues(s.tf);
-    const bool coarseForBulk = step * kStepsOfBulk > bulk.max - bulk.min;
-    const bool coarseForBand = visible && step * kStepsOfBand > visible->max - visible->min;
-    if (step <= 0.0 || (!coarseForBulk && !coarseForBand)) {
+    if (s.texelStep <= longestTexelStep(s.statistics, s.tf)) {
         return std::nullopt;
     }
-    return fmt::format("the texels have steps of {:.3g}, since values reach from {}: too coarse "
-                       "for {}; --exact keeps every value",
-                       step, text(rangeOf(s.statistics)),
-                       coarseForBulk ? "those from " + text(bulk)
-                                     : "a transfer function that shows " + text(*visible));
+    const std::optional<ValueRange> visible = visibleValues(s.tf);
+    return fmt::format(
+        "the texels have steps of {:.3g}, since values reach from {}: too coarse "
+        "for a transfer function that shows {}; --downsample 2 makes room for exact ones",
+        s.texelStep, text(rangeOf(s.statistics)), text(visible.value_or(s.statistics.shown())));
+}
+
+/// Every value is kept, at eight fetches a sample.
+Line fineTexels(const PictureSubject& s) {
+    if (s.filteredStep <= longestTexelStep(s.statistics, s.tf) || s.texelStep > 0.0) {
+        return std::nullopt;
+    }
+    return fmt::format("values reach from {}, and filtered texels would have steps of {:.3g}, too "
+                       "coarse for what is shown: every value is kept, as by --exact, at eight "
+                       "fetches a sample",
+                       text(rangeOf(s.statistics)), s.filteredStep);
 }
 
 } // namespace
@@ -177,6 +169,7 @@ std::vector<std::string> adviceOn(const PictureSubject& subject) {
         add(laidOverBulk(subject));
     }
     add(coarseTexels(subject));
+    add(fineTexels(subject));
     add(unitOfLength(subject));
     return lines;
 }

@@ -17,6 +17,7 @@ struct PictureSubject {
     TransferFunction tf;
     bool laidOverBulk = false;   // the TF has no values of its own, and outliers were left out
     double texelStep = 0.0;      // between neighbouring values of texels; 0 where they are exact
+    double filteredStep = 0.0;   // that of the format that the device would filter
     bool anythingVisible = true; // of what lies between voxels, as the scene found
     bool mayBeConstant = false;  // one value everywhere is what was asked for
 };

@@ -1,3 +1,5 @@
+#include <limits>
+
 #include <fmt/core.h>
 
 #include "platform/cli/commands.h"
@@ -43,7 +45,8 @@ Result<void> deviceCommand() {
         for (const bool exact : {false, true}) {
             std::string reason;
             const TexelFormat format =
-                chooseTexelFormat(type, ct, exact, session->device.formats(), &reason);
+                chooseTexelFormat(type, ct, exact, std::numeric_limits<double>::infinity(),
+                                  session->device.formats(), &reason);
             fmt::print("  {:<6} {:<8} {:<12} {}\n", name(type), exact ? "--exact" : "",
                        name(format), reason);
         }

@@ -1,5 +1,7 @@
 #include "platform/cli/open_stage.h"
 
+#include <algorithm>
+
 #include "core/scene/memory_forecast.h"
 #include "platform/cli/advice.h"
 #include "platform/cli/progress.h"
@@ -9,24 +11,22 @@ namespace slabcast {
 
 namespace {
 
-/// Between neighbouring data values of texels; 0 where every voxel is kept exactly.
-double stepOf(const Texels& texels) {
-    const double steps = texels.format == TexelFormat::R8    ? 255.0
-                         : texels.format == TexelFormat::R16 ? 65535.0
-                                                             : 1.0;
-    return texels.maxQuantisationError > 0.0 ? texels.valueScale / steps : 0.0;
-}
-
 void advise(const SceneOptions& options, const Stage& stage) {
     const Scene& scene = stage.scene();
     const VolumeInfo& info = stage.info();
+    const auto stepOf = [&](TexelFormat format) {
+        return texelStep(format, info.type, scene.statistics());
+    };
+    const TexelFormat filtered =
+        stage.device().texturesFor(info.type, scene.statistics(), options.input.exact).texels;
     const PictureSubject subject{
         .dims = info.dims,
         .spacingMm = info.spacingMm,
         .statistics = scene.statistics(),
         .tf = scene.look().tf,
         .laidOverBulk = isLaidOverBulk(options.tf, {scene.statistics(), info.unit}, info.modality),
-        .texelStep = stepOf(scene.texels()),
+        .texelStep = stepOf(scene.texels().format),
+        .filteredStep = stepOf(filtered),
         .anythingVisible = scene.facts().anythingVisible,
         .mayBeConstant = options.input.volume.starts_with("phantom:")};
     for (const std::string& line : adviceOn(subject)) {
@@ -34,22 +34,28 @@ void advise(const SceneOptions& options, const Stage& stage) {
     }
 }
 
-/// Refuses, before its voxels are read, what no texture of the device or of the budget can hold,
-/// whatever format will be chosen.
-LoadOptions admittingWhatFits(const InputOptions& input, const gl::Caps& caps,
-                              std::optional<std::int64_t> budgetBytes) {
-    LoadOptions load = input.load;
-    load.admit = [&input, &caps, budgetBytes](const Volume& header) -> Result<void> {
-        if (input.cubeEdge > 0 || input.downsample > 1) {
-            return {}; // what is drawn is made of these voxels
-        }
-        const std::int64_t least = bytesPerVoxel(header.type) == 1 ? 1 : 2; // bytes per texel
-        return checkFits(header.geometry.dims, least, caps, budgetBytes);
-    };
-    return load;
+/// A volume's dims as they will be drawn.
+glm::ivec3 drawnDims(glm::ivec3 dims, const InputOptions& input) {
+    return input.cubeEdge > 0 ? glm::ivec3(input.cubeEdge) : (dims - 1) / input.downsample + 1;
 }
 
 } // namespace
+
+InputOptions admittingWhatFits(InputOptions input, const gl::Caps& caps, const StageDesc& desc) {
+    const int leastOfColours = desc.settings.classification == Classification::Pre ? 4 : 1;
+    InputOptions fitting = input;
+    fitting.load.admit = [input = std::move(input), caps, budget = desc.gpuBudgetBytes,
+                          leastOfColours](const Volume& header) -> Result<void> {
+        const int ofScalars = bytesPerVoxel(header.type) > 1 || input.exact ? 2 : 1;
+        const std::int64_t least = std::max(leastOfColours, ofScalars); // bytes per texel
+        const glm::ivec3 dims = header.geometry.dims;
+        const glm::ivec3 drawn = drawnDims(dims, input);
+        const Result<void> fits = checkFits(drawn, least, caps, budget);
+        // Asked of all voxels, it names the --downsample that does.
+        return fits || input.cubeEdge > 0 ? fits : checkFits(dims, least, caps, budget);
+    };
+    return fitting;
+}
 
 StageDesc stageDescOf(const SceneOptions& o) {
     StageDesc desc{.size = o.size,
@@ -69,10 +75,7 @@ StageDesc stageDescOf(const SceneOptions& o) {
 
 Result<Stage> openStage(const Session& session, const InputOptions& input, const std::string& tf,
                         StageDesc desc) {
-    const Progress progress("reading " + input.volume);
-    InputOptions fitting = input;
-    fitting.load = admittingWhatFits(input, session.device.caps(), desc.gpuBudgetBytes);
-    Result<Volume> volume = openVolume(fitting);
+    Result<Volume> volume = openVolume(admittingWhatFits(input, session.device.caps(), desc));
     if (!volume) {
         return tl::unexpected(volume.error());
     }
@@ -80,7 +83,7 @@ Result<Stage> openStage(const Session& session, const InputOptions& input, const
         say(volume->name + ": " + std::to_string(volume->nonFiniteVoxels) +
             " voxels are NaN or infinite: treated as the lowest value");
     }
-    const VolumeStatistics statistics = computeStatistics(*volume);
+    const VolumeStatistics statistics = statisticsOf(*volume);
     const Modality modality = likelyModality(*volume, statistics);
     Result<TransferFunction> chosen =
         chooseTransferFunction(tf, {statistics, volume->unit}, modality);

@@ -74,6 +74,21 @@ class Pictures(CliTest):
         self.assertEqual(self.stats(PHANTOM, *QUICK, "--frames", "3")["frame_ms"]["n"], 3)
         self.assertEqual((self.folder / "p.png").read_bytes(), one)
 
+    def test_settings_of_an_earlier_picture_draw_it_again(self):
+        size = ("--size", "32x32")
+        changed = ("--layers", "48", "--planes", "3", "--jitter", "on", "--space", "linear", "--target", "rgba16f")
+        stats = self.stats(PHANTOM, *size, *changed)
+        first = (self.folder / "p.png").read_bytes()
+        (self.folder / "first.json").write_text(json.dumps(stats))
+        self.assertEqual(self.picture(PHANTOM, *size, "--settings", "first.json"), first)
+        self.assertNotEqual(self.picture(PHANTOM, *size, *RATIO), first)
+        # What is given beside a file goes over it, whichever is named first, and over what it makes useless.
+        for order in (("--settings", "first.json", "--layer-spacing", "2"), ("--layer-spacing", "2", "--settings", "first.json")):
+            again = self.stats(PHANTOM, *size, *order)["settings"]
+            self.assertEqual((again["layers"], again["layer_spacing"], again["planes"]), (None, 2.0, 3))
+        (self.folder / "few.json").write_text('{"layers": 48, "planes": 3}')
+        self.assertEqual(self.picture(PHANTOM, *size, "--settings", "few.json"), self.picture(PHANTOM, *size, "--layers", "48", "--planes", "3"))
+
     def test_turning_the_camera_changes_the_picture(self):
         self.assertNotEqual(self.picture(PHANTOM, *QUICK), self.picture(PHANTOM, *QUICK, "--camera", "-30,80,2"))
 
@@ -195,19 +210,20 @@ class Advice(CliTest):
     def test_fill_values_are_hidden_or_named(self):
         exact = ("--exact",)
         laid = r"slabcast: v.nrrd: values reach [^\n]*laid over[^\n]*\n"
-        fill = r"slabcast: v.nrrd: \d+ voxels hold {}, most likely a fill value[^\n]* 0 {} these, with --exact\n"
+        fill = r"slabcast: v.nrrd: \d+ voxels hold {}, most likely a fill value[^\n]* 0 {} these\n"
+        kept = r"slabcast: v.nrrd: values reach from [^\n]*steps of [^\n]*every value is kept, as by --exact[^\n]*\n"
         tf = ((0.2, 0.0), (0.9, 0.5))
         for value, text in ((9.96921e36, r"9.96921e\+36"), (3.4028234e38, r"3.40282e\+38")):
             content = self.ball(outside=value)
             with self.subTest(value):
-                self.drawn(content, tf=tf, notes=fill.format(text, "above") + r"slabcast: v.nrrd: the texels have steps[^\n]*--exact[^\n]*\n")
+                self.drawn(content, tf=tf, notes=fill.format(text, "above") + kept)
                 self.assert_ball(self.drawn(content, *exact, notes=laid))
                 self.assert_ball(self.drawn(content, *exact, tf=(*tf, (1.0, 0.5), (1.01, 0.0))))
         self.assert_ball(self.drawn(self.ball(outside=-9999), *exact, notes=laid))
 
     def test_texels_too_coarse_for_what_is_shown(self):
         content, tf = self.ball(hot={0: 1e6}), ((0.2, 0.0), (0.9, 0.5))
-        self.drawn(content, tf=tf, notes=r"slabcast: v.nrrd: the texels have steps of 15\.\d[^\n]*too coarse for those from 0 to 1; --exact[^\n]*\n")
+        self.assert_ball(self.drawn(content, tf=tf, notes=r"slabcast: v.nrrd: values reach from 0 to 1000000, and [^\n]*steps of 15\.\d[^\n]*every value is kept, as by --exact[^\n]*\n"))
         self.assert_ball(self.drawn(content, "--exact", tf=tf))
 
     def test_lengths_that_are_no_millimetres(self):

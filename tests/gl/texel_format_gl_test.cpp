@@ -2,6 +2,7 @@
 #include "core/scene/texel_format.h"
 
 #include <cmath>
+#include <limits>
 
 #include "core/gl/program.h"
 #include "core/gl/state_guard.h"
@@ -11,6 +12,8 @@
 namespace slabcast {
 
 namespace {
+
+constexpr double kAnyStep = std::numeric_limits<double>::infinity();
 
 const TexelFormatTest& entry(const std::vector<TexelFormatTest>& tests, TexelFormat format) {
     return tests.at(static_cast<std::size_t>(format));
@@ -137,7 +140,8 @@ TEST(ChooseTexelFormat, FollowsTypeAndDevice) {
     };
     for (const Row& row : rows) {
         std::string reason;
-        EXPECT_EQ(chooseTexelFormat(row.type, {}, row.exact, row.tests, &reason), row.expected)
+        EXPECT_EQ(chooseTexelFormat(row.type, {}, row.exact, kAnyStep, row.tests, &reason),
+                  row.expected)
             << name(row.type) << (row.exact ? " exact: " : ": ") << reason;
         EXPECT_FALSE(reason.empty());
         EXPECT_EQ(reason.find('\n'), std::string::npos);
@@ -149,22 +153,24 @@ TEST(ChooseTexelFormat, ReasonNamesLossAndRejection) {
     statistics.min = -1.0;
     statistics.max = 1.0;
     std::string reason;
-    chooseTexelFormat(VoxelType::F32, statistics, false, allBut({TexelFormat::R16}), &reason);
+    chooseTexelFormat(VoxelType::F32, statistics, false, kAnyStep, allBut({TexelFormat::R16}),
+                      &reason);
     EXPECT_NE(reason.find("0.000244"), std::string::npos) << reason; // 2 / 4096 / 2
     EXPECT_NE(reason.find("broken here"), std::string::npos) << reason;
-    EXPECT_EQ(chooseTexelFormat(VoxelType::U8, statistics, false, {}, nullptr), TexelFormat::R8);
+    EXPECT_EQ(chooseTexelFormat(VoxelType::U8, statistics, false, kAnyStep, {}, nullptr),
+              TexelFormat::R8);
 }
 
 TEST(VolumeMemory, ForecastCountsEveryCopy) {
     const auto forecast = forecastMemory({10, 20, 30}, VoxelType::I16, TexelFormat::R16F);
     ASSERT_TRUE(forecast.has_value());
     EXPECT_EQ(forecast->gpuTexelBytes, 12000);
-    EXPECT_EQ(forecast->hostBytes(), 12000 + 12000 + 12000);
+    EXPECT_EQ(forecast->hostBytes(), 12000 + 12000); // texels take the place of voxels
     // Colours of four bytes on both sides, beside the scalars that they are made from.
     const auto classified = forecastMemory({10, 20, 30}, VoxelType::I16, TexelFormat::R16F, true);
     ASSERT_TRUE(classified.has_value());
     EXPECT_EQ(classified->gpuTexelBytes, 24000);
-    EXPECT_EQ(classified->hostBytes(), 12000 + 12000 + 24000 + 6000); // codes of alpha have 8 bits
+    EXPECT_EQ(classified->hostBytes(), 12000 + 24000 + 6000); // codes of alpha have 8 bits
     EXPECT_EQ(forecastTextureBytes({3, 5, 7}, TexelFormat::R8), 105);
     EXPECT_EQ(forecastTextureBytes({3, 5, 7}, TexelFormat::R32fExact), 420);
 }
@@ -338,8 +344,10 @@ TEST_F(TexelFormatGl, UploadInSeveralSlabsKeepsEverySlice) {
     Texels texels;
     texels.format = TexelFormat::R8;
     texels.dims = {2048, 1024, 20};
-    for (int z = 0; z < texels.dims.z; ++z) {
-        texels.data.resize(texels.data.size() + 2048 * 1024, std::byte(z * 10));
+    constexpr std::size_t kSlice = std::size_t{2048} * 1024;
+    texels.data.resize(kSlice * 20);
+    for (std::size_t i = 0; i < texels.data.size(); ++i) {
+        texels.data[i] = std::byte(i / kSlice * 10);
     }
     const auto texture = uploadTexels(texels, caps());
     ASSERT_TRUE(texture.has_value()) << texture.error().detail;
