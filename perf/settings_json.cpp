@@ -1,5 +1,7 @@
 #include "perf/settings_json.h"
 
+#include <algorithm>
+
 #include "perf/report_json.h"
 
 namespace slabcast {
@@ -25,6 +27,59 @@ Json toJson(const Settings& settings) {
         all[keyOf(setting.name)] = toJson(setting, setting.read(settings));
     }
     return all;
+}
+
+namespace {
+
+/// As Setting::parse() reads it; a list or an object as what it is, which no setting takes.
+std::string textOf(const Setting& setting, const Json& value) {
+    if (value.isNull() && setting.unset != nullptr) {
+        return setting.unset;
+    }
+    if (value.isBool()) {
+        return value.flag() ? "on" : "off";
+    }
+    if (value.isText()) {
+        return value.text();
+    }
+    const bool isPair = value.isList() && value.size() == 2;
+    return isPair ? value.at(std::size_t{0}).dump() + "," + value.at(std::size_t{1}).dump()
+                  : value.dump();
+}
+
+const Setting* settingOfKey(std::string_view key) {
+    for (const Setting& setting : settingsTable()) {
+        if (keyOf(setting.name) == key) {
+            return &setting;
+        }
+    }
+    return nullptr;
+}
+
+} // namespace
+
+Result<void> takeSettings(Settings& settings, const Json& given,
+                          std::span<const std::string_view> left) {
+    const Json& all = given.at("settings").isObject() ? given.at("settings") : given;
+    if (!all.isObject()) {
+        return fail(ErrorCode::InvalidArgument, "holds no settings");
+    }
+    Settings taken = settings;
+    for (const std::string& key : all.names()) {
+        const Setting* setting = settingOfKey(key);
+        if (setting == nullptr) {
+            return fail(ErrorCode::InvalidArgument, key + ": is no setting");
+        }
+        const Result<SettingValue> value = setting->parse(textOf(*setting, all.at(key)));
+        if (!value) {
+            return tl::unexpected(value.error());
+        }
+        if (std::find(left.begin(), left.end(), setting->name) == left.end()) {
+            setting->write(taken, *value);
+        }
+    }
+    settings = taken;
+    return {};
 }
 
 } // namespace slabcast

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <fstream>
+#include <iterator>
+#include <optional>
 
 #include "core/base/number_text.h"
+#include "perf/settings_json.h"
 
 namespace slabcast {
 
@@ -44,6 +48,25 @@ std::string valuesSaid(const Setting& setting) {
     return ranged ? "; from " + numberText(setting.low) + " to " + numberText(setting.high) : "";
 }
 
+/// What does nothing beside a setting, and was in a file.
+void forgetRivals(Settings& settings, const Setting& given) {
+    for (const Setting& other : settingsTable()) {
+        const bool rivals =
+            (other.excludes != nullptr && other.excludes == std::string_view(given.name)) ||
+            (given.excludes != nullptr && given.excludes == std::string_view(other.name));
+        if (rivals && other.unset != nullptr) {
+            other.write(settings, {});
+        }
+    }
+}
+
+/// Nothing where it cannot be read.
+std::optional<std::string> contentOf(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string text(std::istreambuf_iterator<char>(file), {});
+    return file.is_open() && !file.bad() ? std::optional(std::move(text)) : std::nullopt;
+}
+
 } // namespace
 
 std::string flagOf(const Setting& setting) {
@@ -67,14 +90,43 @@ Option& bindSetting(Command& command, Settings& settings, std::string_view name)
             const std::string& detail = value.error().detail;
             return fail(value.error().code, detail.substr(detail.find(": ") + 2));
         }
+        forgetRivals(settings, setting);
         setting.write(settings, *value);
         return {};
     };
     return command.options.emplace_back(std::move(option));
 }
 
+namespace {
+
+/// Before the options of single settings, whose words are taken in the order of the table.
+void bindSettingsFile(Command& command, Settings& settings, std::vector<std::string_view> left) {
+    command.options.push_back(
+        {.flag = "--settings",
+         .help =
+             "settings of an earlier picture: its --stats file, or a JSON object with names and "
+             "values; options beside it go over them",
+         .word = "FILE",
+         .group = "Look",
+         .take = [&settings, left](const std::string& file) -> Result<void> {
+             const auto named = [&](Error error) {
+                 return Error{error.code, file + ": " + error.detail};
+             };
+             const std::optional<std::string> text = contentOf(file);
+             if (!text) {
+                 return fail(ErrorCode::InvalidArgument, file + ": cannot be read; check the path");
+             }
+             const std::optional<Json> all = Json::parse(*text);
+             return all ? takeSettings(settings, *all, left).map_error(named)
+                        : fail(ErrorCode::InvalidArgument, file + ": is no JSON");
+         }});
+}
+
+} // namespace
+
 void bindSettingsBut(Command& command, Settings& settings,
                      std::initializer_list<std::string_view> left) {
+    bindSettingsFile(command, settings, left);
     for (const Setting& setting : settingsTable()) {
         if (std::find(left.begin(), left.end(), setting.name) == left.end()) {
             bindSetting(command, settings, setting.name);

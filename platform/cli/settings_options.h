@@ -14,7 +14,8 @@ std::string flagOf(const Setting& setting);
 
 /// An option for the setting of this name, with the table's help, range and default.
 Option& bindSetting(Command& command, Settings& settings, std::string_view name);
-/// One for every setting of the table but these.
+/// One for every setting of the table but these, and one for a file of them, over which the others
+/// go.
 void bindSettingsBut(Command& command, Settings& settings,
                      std::initializer_list<std::string_view> left);
 

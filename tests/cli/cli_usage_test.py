@@ -50,6 +50,14 @@ class BadUsage(CliTest):
                           (("info",), "VOLUME is required"),
                           (("device", "2"), "2")))
 
+    def test_files_of_settings_that_hold_none(self):
+        bad = {"text.json": ("layers: 4", "is no JSON"), "list.json": ("[1]", "holds no settings"),
+               "other.json": ('{"no_such": 1}', "no_such: is no setting"), "value.json": ('{"layers": 0}', "layers: '0' is not .+")}
+        for name, (content, _) in bad.items():
+            self.write(name, content)
+        self.all_misused([(("render", PHANTOM, "-o", "p.png", "--settings", name), f"--settings: {name}: {cause}")
+                          for name, (_, cause) in (*bad.items(), ("missing.json", ("", "cannot be read; check the path")))])
+
     def test_options_that_would_do_nothing(self):
         """Each is refused by name, with what makes it idle."""
         self.write("v.nrrd", "no volume; nothing reads it")

@@ -225,7 +225,8 @@ std::string page() {
         "# Settings\n\n"
         "What a picture depends on beside volume, transfer function and view. Each is an option "
         "of the command line (`--layers 128`), a member of `slabcast::Settings`, and an entry of "
-        "`settings` in `stats.json`, there in snake_case: `layers_per_plane`. This page is made "
+        "`settings` in `stats.json`, there in snake_case: `layers_per_plane`; `--settings "
+        "stats.json` takes them from there. This page is made "
         "from "
         "the table in `core/plan/settings_table.cpp`, and a test holds it to that.\n";
     std::string group;
