@@ -17,7 +17,7 @@ fi
 readonly sources=(tests/fuzz/targets.cpp platform/io/base/load_words.cpp platform/io/base/parse_text.cpp platform/io/volumes/*header*.cpp
     platform/io/volumes/length_unit.cpp platform/io/apart/wire.cpp platform/json/json_checks.cpp
     platform/json/transfer_json.cpp platform/cli/edit_script.cpp perf/json.cpp perf/error/error_table_json.cpp)
-readonly flags=(-std=c++20 -O1 -g1 -I. -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all)
+readonly flags=(-std=c++20 -O2 -g1 -I. -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all)
 
 clang=$(command -v clang++-14 || command -v clang++) || { echo "skipped: no clang++"; exit 77; }
 mkdir -p "$folder/objects"
