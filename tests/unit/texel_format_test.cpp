@@ -101,7 +101,7 @@ TEST(ChooseTexelFormatTest, takesNoStepsThatAreTooLong) {
     const VolumeStatistics hot = reaching(0.0, 1e6);
     EXPECT_EQ(chosen(VoxelType::F32, hot, 16.0, kAllFiltered), TexelFormat::R16);
     EXPECT_EQ(chosen(VoxelType::F32, hot, 15.0, kAllFiltered), TexelFormat::R32fExact);
-    EXPECT_NE(reason.find("R16 has steps of 15.3, too long for what is shown"), std::string::npos)
+    EXPECT_NE(reason.find("r16 has steps of 15.3, too long for what is shown"), std::string::npos)
         << reason;
     const VolumeStatistics wide = reaching(-32768.0, 32767.0);
     EXPECT_EQ(chosen(VoxelType::I16, wide, 1e-3, kAllFiltered), TexelFormat::R16);
