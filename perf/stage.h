@@ -89,7 +89,7 @@ public:
     /// What the texture unit's filter may add to a sample of the scene, in sampled units.
     double filterErrorSampled() const;
     /// The volume's own values. Contract: StageDesc::keepValues.
-    const Texels& values() const { return *values_; }
+    const Texels& values() const { return values_ ? *values_ : scene_.texels(); }
     Renderer& renderer() { return renderer_; }
     const Renderer& renderer() const { return renderer_; }
 
@@ -106,7 +106,7 @@ private:
     Watcher watcher_;
     Scene scene_;
     VolumeInfo info_;
-    std::optional<Texels> values_; // exact, where they are to be kept
+    std::optional<Texels> values_; // where they are to be kept and the scene's texels round them
     Renderer renderer_;
     gl::ColorTargets target_;
     CompositingSpace space_ = CompositingSpace::Display;

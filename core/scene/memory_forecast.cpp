@@ -83,6 +83,8 @@ Result<MemoryForecast> forecastMemory(glm::ivec3 dims, VoxelType type, TexelForm
     const auto voxels = checkedByteCount(glm::i64vec3(dims), type);
     const auto texels = forecastTextureBytes(dims, format);
     const auto uploaded = textureBytes(dims, uploadedBytesPerTexel(format, preclassified));
+    // Texels as long as voxels take their place: encodeTexels().
+    const bool inPlace = bytesPerTexel(format) == bytesPerVoxel(type);
     // Of 8-bit scalars they are the texels themselves, of pre-classified ones their alphas.
     const bool ownCodes = format == TexelFormat::R8 && !preclassified;
     const auto codes =
@@ -94,7 +96,7 @@ Result<MemoryForecast> forecastMemory(glm::ivec3 dims, VoxelType type, TexelForm
     }
     return MemoryForecast{.gpuTexelBytes = *uploaded,
                           .hostVoxelBytes = *voxels,
-                          .hostTexelBytes = *texels,
+                          .hostTexelBytes = inPlace ? 0 : *texels,
                           .hostClassifiedBytes = preclassified ? *uploaded : 0,
                           .hostCodeBytes = *codes};
 }
@@ -106,6 +108,19 @@ Result<std::int64_t> forecastTextureBytes(glm::ivec3 dims, TexelFormat format) {
 Result<void> checkFits(glm::ivec3 dims, std::int64_t bytesPerTexel, const gl::Caps& caps,
                        std::optional<std::int64_t> gpuBudgetBytes) {
     return checkExtent(dims, bytesPerTexel, {caps.maxTexture3DSize, gpuBudgetBytes});
+}
+
+Result<void> checkRoom(glm::ivec3 dims, std::int64_t bytesPerTexel) {
+    constexpr std::int64_t kFewBytes = std::int64_t{256} << 20;
+    const Result<std::int64_t> bytes = textureBytes(dims, bytesPerTexel);
+    if (!bytes || *bytes < kFewBytes) {
+        return bytes.map([](std::int64_t) {});
+    }
+    SLABCAST_EXPECTS(bytesPerTexel == 1 || bytesPerTexel == 2 || bytesPerTexel == 4, bytesPerTexel);
+    const TexelLayout& layout = bytesPerTexel == 4   ? classifiedLayout()
+                                : bytesPerTexel == 2 ? texelLayoutOf(TexelFormat::Rg8Exact)
+                                                     : texelLayoutOf(TexelFormat::R8);
+    return allocate3d("volume texels", layout, dims).map([](const gl::Texture&) {});
 }
 
 } // namespace slabcast

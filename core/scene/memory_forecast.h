@@ -14,7 +14,7 @@ namespace slabcast {
 struct MemoryForecast {
     std::int64_t gpuTexelBytes = 0;
     std::int64_t hostVoxelBytes = 0; // the volume as loaded
-    std::int64_t hostTexelBytes = 0; // what is uploaded, or classified first
+    std::int64_t hostTexelBytes = 0; // what is uploaded, or classified first; 0: as the voxels
     std::int64_t hostClassifiedBytes = 0;
     std::int64_t hostCodeBytes = 0; // codes that the skip structures are built from
     std::int64_t hostBytes() const {
@@ -38,5 +38,11 @@ Result<std::int64_t> forecastTextureBytes(glm::ivec3 dims, TexelFormat format);
 /// EmptyVolume, SizeOverflow.
 Result<void> checkFits(glm::ivec3 dims, std::int64_t bytesPerTexel, const gl::Caps& caps,
                        std::optional<std::int64_t> gpuBudgetBytes = std::nullopt);
+
+/// Whether the driver has room for such a texture, which no query tells: makes one and lets it go.
+/// Below 256 MiB it is believed to. Cost: as much as making a texture without content; some drivers
+/// fill it with zeros. Changes the binding of the active unit. Fails: DeviceOutOfMemory, Internal.
+/// Contract: checkFits(); bytes per texel of 1, 2 or 4.
+Result<void> checkRoom(glm::ivec3 dims, std::int64_t bytesPerTexel);
 
 } // namespace slabcast

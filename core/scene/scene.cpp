@@ -90,6 +90,12 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 Scene::~Scene() = default;
 
 Result<Scene> Scene::create(Volume volume, const TextureChoice& choice) {
+    const VolumeStatistics statistics = computeStatistics(volume);
+    return create(std::move(volume), statistics, choice);
+}
+
+Result<Scene> Scene::create(Volume volume, const VolumeStatistics& statistics,
+                            const TextureChoice& choice) {
     if (Result<void> ok = checkTableSize(choice.maxTableSize); !ok) {
         return tl::unexpected(ok.error());
     }
@@ -97,9 +103,9 @@ Result<Scene> Scene::create(Volume volume, const TextureChoice& choice) {
     state->volumeName = volume.name;
     state->geometry = volume.geometry;
     state->integerData = !isFloatingPoint(volume.type) && volume.rescaleSlope == 1.0;
-    state->statistics = computeStatistics(volume);
+    state->statistics = statistics;
     state->texels =
-        std::make_shared<Texels>(encodeTexels(volume, state->statistics, choice.texels));
+        std::make_shared<Texels>(encodeTexels(std::move(volume), statistics, choice.texels));
     state->texelsGeneration = nextGeneration();
     state->lookGeneration = nextGeneration();
     state->filterErrorSampled = choice.filterErrorOfFullScale * fullScaleSampled(choice.texels);
@@ -112,8 +118,9 @@ Result<Scene> Scene::create(Volume volume, const Device& device, bool exact) {
     if (!valid) {
         return tl::unexpected(valid.error());
     }
-    const TextureChoice choice = device.texturesFor(valid->type, computeStatistics(*valid), exact);
-    return create(std::move(*valid), choice);
+    const VolumeStatistics statistics = computeStatistics(*valid);
+    return create(std::move(*valid), statistics,
+                  device.texturesFor(valid->type, statistics, exact));
 }
 
 Result<void> Scene::setLook(Look look) {

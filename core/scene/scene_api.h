@@ -43,9 +43,12 @@ public:
     Scene& operator=(Scene&&) noexcept;
     ~Scene();
 
-    /// Turns the voxels into texels and lets the voxels go, so that the peak is volume + texels.
+    /// Turns the voxels into texels and lets the voxels go: in their own memory where texels are as
+    /// long, else the peak is volume + texels. `statistics`: the volume's.
     /// Fails: InvalidArgument (a table of fewer than 4 texels). Contract: the volume is
     /// validated().
+    static Result<Scene> create(Volume volume, const VolumeStatistics& statistics,
+                                const TextureChoice& choice);
     static Result<Scene> create(Volume volume, const TextureChoice& choice);
     /// The same of a volume that nobody has validated yet, as the device likes its texels best.
     /// `exact`: interpolated in float32 by the shader. Fails: as validated() also.

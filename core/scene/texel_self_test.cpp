@@ -208,9 +208,11 @@ public:
 
     Result<std::vector<FetchSample>> fetched(const FormatProbe& probe, const gl::Caps& caps) {
         Texels texels = emptyTexels(probe.format, kFetchDims);
+        std::vector<std::byte> data;
         for (int i = 0; i < kSamples; ++i) {
-            probe.append(texels.data, probe.ladder(i));
+            probe.append(data, probe.ladder(i));
         }
+        texels.data = data;
         fetch_.use();
         const auto read = draw(texels, caps);
         if (!read) {
@@ -230,9 +232,11 @@ private:
     Result<Row> drawSweep(const FormatProbe& probe, const CodePair& pair, const Sweep& sweep,
                           const gl::Caps& caps) {
         Texels texels = emptyTexels(probe.format, glm::ivec3(2));
+        std::vector<std::byte> data;
         for (unsigned corner = 0; corner < 8; ++corner) {
-            probe.append(texels.data, pair[sweep.high >> corner & 1U]);
+            probe.append(data, pair[sweep.high >> corner & 1U]);
         }
+        texels.data = data;
         sample_.use();
         gl::Uniform3fv(sample_.uniform("start"), 1, &sweep.start.x);
         gl::Uniform3fv(sample_.uniform("stop"), 1, &sweep.stop.x);

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "core/base/bits.h"
 #include "core/base/parallel.h"
+#include "core/volume/counted_values.h"
 #include "core/volume/voxel_dispatch.h"
 
 namespace slabcast {
@@ -50,8 +52,8 @@ constexpr std::int64_t kVoxelsPerFill = 1000; // one of so many is no stray voxe
 constexpr std::size_t kPrefixes = 1 << 16;
 
 /// One partial result per run of voxels, in their order: sums do not depend on the threads.
-template <class Partial, class T, class Body>
-std::vector<Partial> reduceRuns(std::span<const T> voxels, const Body& body) {
+template <class Partial, class V, class Body>
+std::vector<Partial> reduceRuns(std::span<const V> voxels, const Body& body) {
     const auto count = static_cast<std::int64_t>(voxels.size());
     std::vector<Partial> partials(static_cast<std::size_t>((count + kGrain - 1) / kGrain));
     parallelFor(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -61,14 +63,19 @@ std::vector<Partial> reduceRuns(std::span<const T> voxels, const Body& body) {
     return partials;
 }
 
-template <class T>
-Extent extentOf(std::span<const T> voxels) {
+template <class V>
+Extent extentOf(std::span<const V> voxels) {
     Extent extent;
-    for (const Extent& part : reduceRuns<Extent>(voxels, [](std::span<const T> run) {
-             const auto [min, max] = std::minmax_element(run.begin(), run.end());
-             Extent result{static_cast<double>(*min), static_cast<double>(*max), 0.0};
-             for (const T voxel : run) {
-                 result.sum += static_cast<double>(voxel);
+    for (const Extent& part : reduceRuns<Extent>(voxels, [](std::span<const V> run) {
+             auto min = valueOf(run.front());
+             auto max = min;
+             for (const V& voxel : run) {
+                 min = std::min(min, valueOf(voxel));
+                 max = std::max(max, valueOf(voxel));
+             }
+             Extent result{static_cast<double>(min), static_cast<double>(max), 0.0};
+             for (const V& voxel : run) {
+                 result.sum += dataOf(voxel) * static_cast<double>(countOf(voxel));
              }
              return result;
          })) {
@@ -79,29 +86,31 @@ Extent extentOf(std::span<const T> voxels) {
     return extent;
 }
 
-template <class T>
-Spread spreadOf(std::span<const T> voxels, const Extent& extent, double mean, double origin,
+template <class V>
+Spread spreadOf(std::span<const V> voxels, const Extent& extent, double mean, double origin,
                 double binsPerStep) {
+    using T = decltype(valueOf(voxels.front()));
     const T min = static_cast<T>(extent.min);
     const T max = static_cast<T>(extent.max);
     Spread spread;
     spread.aboveMin = extent.max;
     spread.belowMax = extent.min;
-    for (const Spread& part : reduceRuns<Spread>(voxels, [=](std::span<const T> run) {
+    for (const Spread& part : reduceRuns<Spread>(voxels, [=](std::span<const V> run) {
              Spread result;
              T aboveMin = max;
              T belowMax = min;
-             for (const T voxel : run) {
-                 aboveMin = std::min(aboveMin, voxel > min ? voxel : max);
-                 belowMax = std::max(belowMax, voxel < max ? voxel : min);
+             for (const V& voxel : run) {
+                 aboveMin = std::min(aboveMin, valueOf(voxel) > min ? valueOf(voxel) : max);
+                 belowMax = std::max(belowMax, valueOf(voxel) < max ? valueOf(voxel) : min);
              }
              result.aboveMin = static_cast<double>(aboveMin);
              result.belowMax = static_cast<double>(belowMax);
-             for (const T voxel : run) {
-                 const auto value = static_cast<double>(voxel);
+             for (const V& voxel : run) {
+                 const double value = dataOf(voxel);
                  const double bin = std::clamp((value - origin) * binsPerStep, 0.0, 255.0);
-                 result.squares += (value - mean) * (value - mean);
-                 ++result.histogram[static_cast<std::size_t>(bin)];
+                 result.squares +=
+                     (value - mean) * (value - mean) * static_cast<double>(countOf(voxel));
+                 result.histogram[static_cast<std::size_t>(bin)] += countOf(voxel);
              }
              return result;
          })) {
@@ -157,10 +166,10 @@ std::size_t prefixOf(T voxel) {
 }
 
 /// The values of a cut without the outliers of either end, as a cut that ends at values.
-template <class T>
-Cut withoutOutliers(std::span<const T> voxels, Cut cut, std::int64_t outliers) {
-    const auto within = [cut](T voxel) {
-        const auto value = static_cast<double>(voxel);
+template <class V>
+Cut withoutOutliers(std::span<const V> voxels, Cut cut, std::int64_t outliers) {
+    const auto within = [cut](const V& voxel) {
+        const double value = dataOf(voxel);
         return value >= cut.low && value <= cut.high;
     };
     std::vector<std::atomic<std::int64_t>> counts(kPrefixes);
@@ -168,8 +177,8 @@ Cut withoutOutliers(std::span<const T> voxels, Cut cut, std::int64_t outliers) {
     parallelFor(count, 4 * kGrain, [&](std::int64_t begin, std::int64_t end) {
         std::vector<std::int64_t> own(kPrefixes);
         for (std::int64_t i = begin; i < end; ++i) {
-            const T voxel = voxels[static_cast<std::size_t>(i)];
-            own[prefixOf(voxel)] += within(voxel) ? 1 : 0;
+            const V& voxel = voxels[static_cast<std::size_t>(i)];
+            own[prefixOf(valueOf(voxel))] += within(voxel) ? countOf(voxel) : 0;
         }
         for (std::size_t k = 0; k < kPrefixes; ++k) {
             if (own[k] != 0) {
@@ -180,13 +189,13 @@ Cut withoutOutliers(std::span<const T> voxels, Cut cut, std::int64_t outliers) {
     const auto [first, last] = inner(counts, outliers);
     Cut inside{cut.high, cut.low};
     for (const Cut& part :
-         reduceRuns<Cut>(voxels, [=, f = first, l = last](std::span<const T> run) {
+         reduceRuns<Cut>(voxels, [=, f = first, l = last](std::span<const V> run) {
              Cut result{cut.high, cut.low};
-             for (const T voxel : run) {
-                 const std::size_t prefix = prefixOf(voxel);
+             for (const V& voxel : run) {
+                 const std::size_t prefix = prefixOf(valueOf(voxel));
                  if (prefix >= f && prefix <= l && within(voxel)) {
-                     result.low = std::min(result.low, static_cast<double>(voxel));
-                     result.high = std::max(result.high, static_cast<double>(voxel));
+                     result.low = std::min(result.low, dataOf(voxel));
+                     result.high = std::max(result.high, dataOf(voxel));
                  }
              }
              return result;
@@ -204,15 +213,15 @@ struct Sides {
     std::int64_t above = 0;
 };
 
-template <class T>
-Sides sidesOf(std::span<const T> voxels, Cut cut) {
+template <class V>
+Sides sidesOf(std::span<const V> voxels, Cut cut) {
     Sides sides;
-    for (const Sides& part : reduceRuns<Sides>(voxels, [=](std::span<const T> run) {
+    for (const Sides& part : reduceRuns<Sides>(voxels, [=](std::span<const V> run) {
              Sides result;
-             for (const T voxel : run) {
-                 const auto value = static_cast<double>(voxel);
-                 result.below += value < cut.low ? 1 : 0;
-                 result.above += value > cut.high ? 1 : 0;
+             for (const V& voxel : run) {
+                 const double value = dataOf(voxel);
+                 result.below += value < cut.low ? countOf(voxel) : 0;
+                 result.above += value > cut.high ? countOf(voxel) : 0;
                  if (value >= cut.low && value <= cut.high) {
                      const double place = 255.0 * ((value - cut.low) / (cut.high - cut.low));
                      result.taken[static_cast<std::size_t>(place)] = true;
@@ -230,10 +239,9 @@ Sides sidesOf(std::span<const T> voxels, Cut cut) {
 }
 
 /// In stored voxels.
-template <class T>
-std::optional<BulkOfValues> bulkOf(std::span<const T> voxels, const Extent& extent,
-                                   const Spread& spread) {
-    const auto count = static_cast<std::int64_t>(voxels.size());
+template <class V>
+std::optional<BulkOfValues> bulkOf(std::span<const V> voxels, std::int64_t count,
+                                   const Extent& extent, const Spread& spread) {
     const Cut near = withoutFarEnds(extent, spread);
     const bool farBelow = near.low > extent.min;
     const bool farAbove = near.high < extent.max;
@@ -274,10 +282,12 @@ BulkOfValues inData(BulkOfValues bulk, double slope, double intercept) {
     return bulk;
 }
 
-template <class T>
-VolumeStatistics statisticsOf(std::span<const T> voxels, double slope, double intercept) {
+/// Of a volume of `all` voxels.
+template <class V>
+VolumeStatistics statisticsOf(std::span<const V> voxels, std::int64_t all, double slope,
+                              double intercept) {
     const Extent extent = extentOf(voxels);
-    const auto count = static_cast<double>(voxels.size());
+    const auto count = static_cast<double>(all);
     const double mean = extent.sum / count;
     const double range = extent.max - extent.min;
     // Bins run along the data values, so a negative slope counts from the largest voxel downwards.
@@ -287,7 +297,7 @@ VolumeStatistics statisticsOf(std::span<const T> voxels, double slope, double in
     const Spread spread = spreadOf(voxels, extent, mean, origin, binsPerStep);
     const double a = slope * extent.min + intercept;
     const double b = slope * extent.max + intercept;
-    std::optional<BulkOfValues> bulk = bulkOf(voxels, extent, spread);
+    std::optional<BulkOfValues> bulk = bulkOf(voxels, all, extent, spread);
     if (bulk) {
         bulk = inData(*bulk, slope, intercept);
     }
@@ -296,12 +306,25 @@ VolumeStatistics statisticsOf(std::span<const T> voxels, double slope, double in
             spread.histogram,         bulk};
 }
 
+/// Of fewer voxels, a table of 16 bits costs more than it saves.
+constexpr std::size_t kFewestCounted = std::size_t{1} << 18;
+
 } // namespace
 
 VolumeStatistics computeStatistics(const Volume& volume) {
     SLABCAST_EXPECTS(!volume.voxels.empty(), volume.voxels.size());
-    return visitVoxels(volume, [&](auto voxels) {
-        return statisticsOf(voxels, volume.rescaleSlope, volume.rescaleIntercept);
+    return visitVoxels(volume, [&]<class T>(std::span<const T> voxels) {
+        const auto all = static_cast<std::int64_t>(voxels.size());
+        const auto from = [&]<class V>(std::span<const V> values) {
+            return statisticsOf(values, all, volume.rescaleSlope, volume.rescaleIntercept);
+        };
+        if constexpr (std::is_integral_v<T> && sizeof(T) <= 2) {
+            if (sizeof(T) == 1 || voxels.size() >= kFewestCounted) {
+                const std::vector<Counted<T>> values = countedValues(voxels);
+                return from(std::span<const Counted<T>>(values));
+            }
+        }
+        return from(voxels);
     });
 }
 

@@ -42,7 +42,8 @@ struct VolumeStatistics {
     ValueRange shown() const { return bulk ? bulk->range : ValueRange{min, max}; }
 };
 
-/// Cost: two passes over the voxels, all cores; three more where outliers are likely. The same on
+/// Cost: one pass over voxels of 8 or 16 bits, two over others, all cores; three more of these
+/// where outliers are likely. The same on
 /// any number of threads. Tested by: volume_test.cpp, bulk_test.cpp
 VolumeStatistics computeStatistics(const Volume& volume);
 

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <limits>
+#include <type_traits>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "core/volume/texel_codec.h"
@@ -70,24 +74,96 @@ Mapping mappingFor(const Volume& volume, const VolumeStatistics& statistics) {
     return {first + step * centre, step};
 }
 
-/// Packs all voxels. Returns the largest difference to what was meant, in stored steps.
-template <class T, class Codec>
-double packAll(std::span<const T> voxels, Mapping mapping, Codec codec, std::byte* out) {
-    auto* texels = reinterpret_cast<typename Codec::Texel*>(out);
-    const auto count = static_cast<std::int64_t>(voxels.size());
-    const double unitsPerStep = 1.0 / mapping.step;
+template <class T>
+T at(const std::byte* values, std::int64_t index) {
+    T value;
+    std::memcpy(&value, values + index * static_cast<std::int64_t>(sizeof(T)), sizeof(T));
+    return value;
+}
+
+template <class T>
+void put(std::byte* values, std::int64_t index, T value) {
+    std::memcpy(values + index * static_cast<std::int64_t>(sizeof(T)), &value, sizeof(T));
+}
+
+/// The largest of what `body` returns for runs that cover [0, count).
+template <class Body>
+double largestOfRuns(std::int64_t count, const Body& body) {
     std::vector<double> errors(static_cast<std::size_t>((count + kGrain - 1) / kGrain), 0.0);
     parallelFor(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
-        double largest = 0.0;
-        for (std::int64_t i = begin; i < end; ++i) {
-            const auto voxel = static_cast<double>(voxels[static_cast<std::size_t>(i)]);
-            texels[i] = codec.pack((voxel - mapping.offset) * unitsPerStep);
-            const double kept = mapping.offset + mapping.step * codec.unpack(texels[i]);
-            largest = std::max(largest, std::abs(kept - voxel));
-        }
-        errors[static_cast<std::size_t>(begin / kGrain)] = largest;
+        errors[static_cast<std::size_t>(begin / kGrain)] = body(begin, end);
     });
     return *std::max_element(errors.begin(), errors.end());
+}
+
+/// Voxels of which each is `count` whole units of an integer format, or beyond its ends.
+template <class T, class Texel>
+constexpr bool kMayBeShifted = std::is_integral_v<T> && sizeof(T) <= 2 && std::is_integral_v<Texel>;
+
+/// As packAll(), of these, without floating point.
+template <class T, class Texel>
+double shiftAll(const std::byte* voxels, std::int64_t count, Mapping mapping, std::byte* texels) {
+    const int sign = mapping.step > 0.0 ? 1 : -1;
+    const int offset = static_cast<int>(mapping.offset);
+    constexpr int kMost = std::numeric_limits<Texel>::max();
+    if (voxels == texels && sign > 0 && offset == 0 && std::is_same_v<T, Texel>) {
+        return 0.0;
+    }
+    return largestOfRuns(count, [=](std::int64_t begin, std::int64_t end) {
+        int largest = 0;
+        for (std::int64_t i = begin; i < end; ++i) {
+            const int units = sign * (int{at<T>(voxels, i)} - offset);
+            const int kept = std::clamp(units, 0, kMost);
+            put(texels, i, static_cast<Texel>(kept));
+            largest = std::max(largest, std::abs(units - kept));
+        }
+        return static_cast<double>(largest);
+    });
+}
+
+/// Packs all voxels, also into the memory that they lie in, where texels are as long. Returns the
+/// largest difference to what was meant, in stored steps.
+template <class T, class Codec>
+double packAll(const std::byte* voxels, std::int64_t count, Mapping mapping, Codec codec,
+               std::byte* texels) {
+    using Texel = typename Codec::Texel;
+    if constexpr (kMayBeShifted<T, Texel> && !Codec::kCentred) {
+        if (std::abs(mapping.step) == 1.0) {
+            return shiftAll<T, Texel>(voxels, count, mapping, texels);
+        }
+    }
+    const double unitsPerStep = 1.0 / mapping.step;
+    return largestOfRuns(count, [=](std::int64_t begin, std::int64_t end) {
+        double largest = 0.0;
+        for (std::int64_t i = begin; i < end; ++i) {
+            const auto voxel = static_cast<double>(at<T>(voxels, i));
+            const Texel texel = codec.pack((voxel - mapping.offset) * unitsPerStep);
+            put(texels, i, texel);
+            const double kept = mapping.offset + mapping.step * codec.unpack(texel);
+            largest = std::max(largest, std::abs(kept - voxel));
+        }
+        return largest;
+    });
+}
+
+/// Into `data`, which may be the voxels' own memory.
+Texels encodeInto(VoxelBytes data, const std::byte* voxels, const Volume& volume,
+                  const VolumeStatistics& statistics, TexelFormat format) {
+    return visitVoxelType(volume.type, [&]<class T>(std::type_identity<T>) {
+        return visitTexelFormat(format, [&]<class Codec>(Codec codec) {
+            const auto mapping = mappingFor<T, Codec>(volume, statistics);
+            const auto count = static_cast<std::int64_t>(data.size() / bytesPerTexel(format));
+            Texels texels;
+            texels.format = format;
+            texels.dims = volume.geometry.dims;
+            texels.valueScale = volume.rescaleSlope * mapping.step * Codec::kUnitsPerSampled;
+            texels.valueBias = volume.rescaleSlope * mapping.offset + volume.rescaleIntercept;
+            texels.maxQuantisationError = std::abs(volume.rescaleSlope) *
+                                          packAll<T>(voxels, count, mapping, codec, data.data());
+            texels.data = std::move(data);
+            return texels;
+        });
+    });
 }
 
 } // namespace
@@ -112,22 +188,31 @@ double fullScaleSampled(TexelFormat format) {
                             [](auto codec) { return codec.kExactUnits / codec.kUnitsPerSampled; });
 }
 
+bool keepsEveryVoxel(TexelFormat format, VoxelType type) {
+    if (isFloatingPoint(type)) {
+        return format == TexelFormat::R32fExact && type == VoxelType::F32;
+    }
+    const std::size_t bytes = bytesPerVoxel(type);
+    return bytes == 1 || (bytes == 2 && format != TexelFormat::R8 && format != TexelFormat::R16F);
+}
+
 Texels encodeTexels(const Volume& volume, const VolumeStatistics& statistics, TexelFormat format) {
     SLABCAST_EXPECTS(!volume.voxels.empty(), volume.voxels.size());
-    return visitVoxels(volume, [&]<class T>(std::span<const T> voxels) {
-        return visitTexelFormat(format, [&]<class Codec>(Codec codec) {
-            const auto mapping = mappingFor<T, Codec>(volume, statistics);
-            Texels texels;
-            texels.format = format;
-            texels.dims = volume.geometry.dims;
-            texels.valueScale = volume.rescaleSlope * mapping.step * Codec::kUnitsPerSampled;
-            texels.valueBias = volume.rescaleSlope * mapping.offset + volume.rescaleIntercept;
-            texels.data.resize(voxels.size() * sizeof(typename Codec::Texel));
-            texels.maxQuantisationError =
-                std::abs(volume.rescaleSlope) * packAll(voxels, mapping, codec, texels.data.data());
-            return texels;
-        });
-    });
+    const std::size_t count = volume.voxels.size() / bytesPerVoxel(volume.type);
+    return encodeInto(VoxelBytes(count * bytesPerTexel(format)), volume.voxels.data(), volume,
+                      statistics, format);
+}
+
+Texels encodeTexels(Volume&& volume, const VolumeStatistics& statistics, TexelFormat format) {
+    if (bytesPerTexel(format) != bytesPerVoxel(volume.type)) {
+        Texels texels = encodeTexels(std::as_const(volume), statistics, format);
+        volume.voxels = {};
+        return texels;
+    }
+    SLABCAST_EXPECTS(!volume.voxels.empty(), volume.voxels.size());
+    VoxelBytes own = std::move(volume.voxels);
+    const std::byte* voxels = own.data();
+    return encodeInto(std::move(own), voxels, volume, statistics, format);
 }
 
 double decodedValue(const Texels& texels, glm::ivec3 voxel) {

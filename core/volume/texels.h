@@ -18,6 +18,9 @@ enum class TexelFormat : std::uint8_t { R8, R16, R16F, Rg8Exact, R32fExact };
 const char* name(TexelFormat format);
 std::size_t bytesPerTexel(TexelFormat format);
 bool isExact(TexelFormat format);
+/// Whether the format keeps every voxel of the type, whatever the values: 8 bits in all formats, 16
+/// in R16 and the exact ones, float32 in R32fExact.
+bool keepsEveryVoxel(TexelFormat format, VoxelType type);
 /// Width of the range that the format's sampled values span: 1 for R8 and R16, 4096 for R16F.
 double fullScaleSampled(TexelFormat format);
 
@@ -31,8 +34,8 @@ struct Texels {
     double valueScale = 1.0;
     double valueBias = 0.0;
     double maxQuantisationError =
-        0.0; // measured over all voxels, in data units; 0 where every voxel is kept exactly
-    std::vector<std::byte> data; // x fastest, tightly packed
+        0.0;         // measured over all voxels, in data units; 0 where every voxel is kept exactly
+    VoxelBytes data; // x fastest, tightly packed
 };
 
 /// Cost: one pass, all cores. R16F is offset and scaled so that integers of up to 12 bits stay
@@ -42,6 +45,9 @@ struct Texels {
 /// Values outside the statistics are clamped by integer formats.
 /// Tested by: texels_test.cpp
 Texels encodeTexels(const Volume& volume, const VolumeStatistics& statistics, TexelFormat format);
+/// The same, and the voxels are gone: where a texel is as long as a voxel, into their memory, so
+/// that nothing is allocated. 8-bit voxels from 0 on are their own texels, without a pass.
+Texels encodeTexels(Volume&& volume, const VolumeStatistics& statistics, TexelFormat format);
 
 /// Data value of one texel as the renderer decodes it.
 double decodedValue(const Texels& texels, glm::ivec3 voxel);

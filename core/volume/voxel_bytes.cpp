@@ -1,6 +1,8 @@
 #include "core/volume/voxel_bytes.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <new>
 
 namespace slabcast {
 
@@ -8,7 +10,12 @@ VoxelBytes::VoxelBytes(std::size_t size) : size_(size) {
     if (size == 0) {
         return;
     }
-    bytes_ = {new std::byte[size](), [](std::byte* bytes) { delete[] bytes; }};
+    // From the system's zeros: large memory takes no room before it is written to.
+    auto* bytes = static_cast<std::byte*>(std::calloc(size, 1));
+    if (bytes == nullptr) {
+        throw std::bad_alloc();
+    }
+    bytes_ = {bytes, [](std::byte* own) { std::free(own); }};
 }
 
 VoxelBytes::VoxelBytes(std::span<const std::byte> bytes) : VoxelBytes(bytes.size()) {

@@ -33,8 +33,8 @@ decltype(auto) visitVoxelType(VoxelType type, Visitor&& visit) {
     contractBreach(__func__, "a voxel type", static_cast<double>(type));
 }
 
-/// Calls `visit(std::span<const T>)` with all stored voxels. A volume's bytes come from `new`, so
-/// they are aligned for every voxel type.
+/// Calls `visit(std::span<const T>)` with all stored voxels. A volume's bytes come from an
+/// allocator or are pages, so they are aligned for every voxel type.
 template <class Visitor>
 decltype(auto) visitVoxels(const Volume& volume, Visitor&& visit) {
     return visitVoxelType(volume.type, [&]<class T>(std::type_identity<T>) -> decltype(auto) {

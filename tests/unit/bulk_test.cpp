@@ -47,6 +47,44 @@ void expectOneHotVoxelLeftOut(double low, double high, double hot) {
     EXPECT_FALSE(bulk->fillBelow || bulk->fillAbove);
 }
 
+/// Voxels of 8 and 16 bits are counted by their value, floats are not.
+template <class T>
+void expectStatisticsOfFloats(const std::vector<T>& voxels, double slope) {
+    Volume counted = rowOf(voxels);
+    Volume single = rowOf(std::vector<float>(voxels.begin(), voxels.end()));
+    counted.rescaleSlope = single.rescaleSlope = slope;
+    const VolumeStatistics a = computeStatistics(counted);
+    const VolumeStatistics b = computeStatistics(single);
+    EXPECT_EQ(a.min, b.min);
+    EXPECT_EQ(a.max, b.max);
+    EXPECT_EQ(a.mean, b.mean); // sums of whole numbers below 2^53
+    EXPECT_NEAR(a.standardDeviation, b.standardDeviation, 1e-9 * b.standardDeviation);
+    EXPECT_EQ(a.histogram, b.histogram);
+    ASSERT_EQ(a.bulk.has_value(), b.bulk.has_value());
+    if (a.bulk) {
+        EXPECT_EQ(a.bulk->range.min, b.bulk->range.min);
+        EXPECT_EQ(a.bulk->range.max, b.bulk->range.max);
+        EXPECT_EQ(a.bulk->voxelsBelow, b.bulk->voxelsBelow);
+        EXPECT_EQ(a.bulk->voxelsAbove, b.bulk->voxelsAbove);
+        EXPECT_EQ(a.bulk->fillBelow, b.bulk->fillBelow);
+        EXPECT_EQ(a.bulk->fillAbove, b.bulk->fillAbove);
+    }
+}
+
+TEST(Statistics, OfCountedValuesAreThoseOfVoxelsOneByOne) {
+    constexpr std::size_t kCount = 300001; // more than are looked at one by one
+    for (const double slope : {1.0, -0.5}) {
+        expectStatisticsOfFloats(ramp<std::uint8_t>(kCount, 0, 255), slope);
+        expectStatisticsOfFloats(ramp<std::int8_t>(kCount, -100, 90), slope);
+        expectStatisticsOfFloats(ramp<std::uint16_t>(kCount, 300, 65535), slope);
+        std::vector<std::int16_t> voxels = ramp<std::int16_t>(kCount, -1000, 2000);
+        expectStatisticsOfFloats(voxels, slope);
+        voxels[5] = 32767;
+        std::fill(voxels.begin() + 1000, voxels.begin() + 3000, std::int16_t{-32768});
+        expectStatisticsOfFloats(voxels, slope);
+    }
+}
+
 TEST(Bulk, LeavesOneHotVoxelOutOfAnyType) {
     expectOneHotVoxelLeftOut<std::uint8_t>(0, 20, 255);
     expectOneHotVoxelLeftOut<std::int8_t>(-10, 10, -128);

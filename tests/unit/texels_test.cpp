@@ -285,6 +285,79 @@ PROPERTY(EncodeTexels, DecodesFromItsBytesByTheHeadersRule) {
     }
 }
 
+template <class T>
+void expectSameInPlace(VoxelType type, const std::vector<T>& voxels) {
+    for (const TexelFormat format : kAllFormats) {
+        for (const double slope : {1.0, -2.0}) {
+            Volume volume = volumeOf(type, voxels);
+            volume.rescaleSlope = slope;
+            const VolumeStatistics statistics = computeStatistics(volume);
+            const Texels expected = encodeTexels(volume, statistics, format);
+            const std::byte* memory = volume.voxels.data();
+            const Texels texels = encodeTexels(std::move(volume), statistics, format);
+            EXPECT_EQ(texels.data, expected.data) << name(type) << " as " << name(format);
+            EXPECT_EQ(texels.maxQuantisationError, expected.maxQuantisationError);
+            EXPECT_EQ(texels.valueScale, expected.valueScale);
+            EXPECT_EQ(texels.valueBias, expected.valueBias);
+            EXPECT_TRUE(volume.voxels.empty()); // NOLINT: that is what is promised
+            EXPECT_EQ(texels.data.data() == memory, sizeof(T) == bytesPerTexel(format));
+        }
+    }
+}
+
+// A volume of 4 GiB is not there twice while texels are made of it.
+TEST(EncodeTexels, TakeTheVoxelsOwnMemoryWhereTheyAreAsLong) {
+    expectSameInPlace<std::uint8_t>(VoxelType::U8, {0, 1, 7, 255});
+    expectSameInPlace<std::uint8_t>(VoxelType::U8, {3, 4, 250});
+    expectSameInPlace<std::int8_t>(VoxelType::I8, {-128, -3, 0, 127});
+    expectSameInPlace<std::uint16_t>(VoxelType::U16, {0, 5, 300, 65535});
+    expectSameInPlace<std::int16_t>(VoxelType::I16, {-32768, -1, 0, 32767});
+    expectSameInPlace<std::int32_t>(VoxelType::I32, {-100000, 0, 2000000000});
+    expectSameInPlace<std::uint32_t>(VoxelType::U32, {3000000000U, 1, 2});
+    expectSameInPlace<float>(VoxelType::F32, {-1.5F, 0.1F, 1e9F});
+    expectSameInPlace<double>(VoxelType::F64, {-1.5, 0.1, 1e9});
+}
+
+TEST(EncodeTexels, OfOtherStatisticsAreClampedAndSaySo) {
+    const Volume volume = volumeOf<std::uint8_t>(VoxelType::U8, {5, 10, 20, 30});
+    VolumeStatistics narrow = computeStatistics(volume);
+    narrow.min = 10.0;
+    narrow.max = 20.0;
+    const Texels texels = encodeTexels(volume, narrow, TexelFormat::R8);
+    EXPECT_EQ(texels.data, (VoxelBytes{std::byte{0}, std::byte{0}, std::byte{10}, std::byte{20}}));
+    EXPECT_EQ(texels.maxQuantisationError, 5.0); // of 5, which 10 stands for
+}
+
+/// Values that no format but a large enough one keeps.
+template <class T>
+std::vector<T> demanding() {
+    std::vector<T> values;
+    if constexpr (std::is_integral_v<T>) {
+        const auto step = std::max<std::int64_t>(
+            1,
+            (std::int64_t{std::numeric_limits<T>::max()} - std::numeric_limits<T>::min()) / 65535);
+        for (std::int64_t i = 0; i <= std::min<std::int64_t>(65535, 1LL << 8 * sizeof(T)); ++i) {
+            values.push_back(static_cast<T>(std::numeric_limits<T>::min() + i * step + i % 3 / 2));
+        }
+    } else {
+        values = {T(0.1), T(1) / T(3), T(-1e6), T(1e6)};
+    }
+    return values;
+}
+
+TEST(TexelFormat, KeepsEveryVoxelWhereItSaysSo) {
+    for (const VoxelType type : {VoxelType::U8, VoxelType::I8, VoxelType::U16, VoxelType::I16,
+                                 VoxelType::U32, VoxelType::I32, VoxelType::F32, VoxelType::F64}) {
+        const Volume volume = visitVoxelType(
+            type, [&]<class T>(std::type_identity<T>) { return volumeOf(type, demanding<T>()); });
+        for (const TexelFormat format : kAllFormats) {
+            EXPECT_EQ(keepsEveryVoxel(format, type),
+                      encoded(volume, format).maxQuantisationError == 0.0)
+                << name(type) << " as " << name(format);
+        }
+    }
+}
+
 void expectCodesBracketTheirTexels(const Volume& volume, TexelFormat format) {
     const Texels texels = encoded(volume, format);
     const TexelCodes codes = encodeCodes(texels);
