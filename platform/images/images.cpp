@@ -15,6 +15,7 @@
 namespace slabcast {
 
 struct ImageFile {
+    std::unique_ptr<OIIO::Filesystem::IOMemReader> bytes; // outlives what reads from it
     std::unique_ptr<OIIO::ImageInput> input;
 };
 
@@ -56,16 +57,17 @@ auto withoutExceptions(const Body& body) noexcept -> decltype(body()) {
     }
 }
 
-ImageFile* open(const char* path) noexcept {
+ImageFile* open(const char* path, const void* bytes, std::size_t count) noexcept {
     return withoutExceptions([&]() -> ImageFile* {
         OIIO::ImageSpec wishes;
         wishes.attribute("oiio:UnassociatedAlpha", 1); // channels as they are stored
-        auto input = OIIO::ImageInput::open(path, &wishes);
+        auto memory = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes, count);
+        auto input = OIIO::ImageInput::open(path, &wishes, memory.get());
         if (!input) {
             error = OIIO::geterror();
             return nullptr;
         }
-        return new ImageFile{std::move(input)};
+        return new ImageFile{std::move(memory), std::move(input)};
     });
 }
 

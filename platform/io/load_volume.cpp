@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <fstream>
+#include <functional>
 #include <new>
 #include <vector>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "platform/io/apart/read_apart.h"
 #include "platform/io/base/parse_text.h"
@@ -56,8 +57,15 @@ Result<Volume> loadFolder(const std::filesystem::path& folder, const LoadOptions
                     fmt::format("{}: holds no files; name a folder with the slices of one volume",
                                 folder.string()));
     }
-    const bool isStack = !images.empty() && !holdDicom(files); // DICOM may come without its mark
-    return isStack ? readImageStack(folder, images, options) : readDicomSeries(folder, options);
+    std::vector<std::filesystem::path> others;
+    std::copy_if(files.begin(), files.end(), std::back_inserter(others), std::not_fn(isImage));
+    if (images.empty() || holdDicom(others)) { // DICOM may come without its mark
+        return readDicomSeries(folder, options);
+    }
+    Result<Volume> stack = readImageStack(folder, images, options);
+    // Looked into only now, for a stack of images needs no look at each for that.
+    const bool mayBeDicom = !stack && stack.error().code != ErrorCode::Cancelled;
+    return mayBeDicom && holdDicom(images) ? readDicomSeries(folder, options) : stack;
 }
 
 Result<Volume> loadFile(const std::filesystem::path& path, const LoadOptions& options) {
@@ -94,9 +102,7 @@ Result<void> checkOpens(const std::filesystem::path& path) {
                                 "that",
                                 path.string()));
     }
-    const bool opens = isFolder ? (std::filesystem::directory_iterator(path, error), !error)
-                                : std::ifstream(path, std::ios::binary).is_open();
-    if (!opens) {
+    if (access(path.c_str(), isFolder ? R_OK | X_OK : R_OK) != 0) { // without opening it
         return fail(ErrorCode::FileUnreadable,
                     fmt::format("{}: cannot be opened; check its permissions", path.string()));
     }

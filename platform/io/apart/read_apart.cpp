@@ -155,11 +155,17 @@ Result<Child> start(const std::filesystem::path& path) {
     for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
         posix_spawn_file_actions_addopen(&actions, standard, "/dev/null", O_RDWR, 0);
     }
+    // In a group of its own: Ctrl-C at the terminal is for the program, which ends its reader.
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    posix_spawnattr_setpgroup(&attributes, 0);
     std::string program = *reader;
     std::array<char*, 2> arguments = {program.data(), nullptr};
     pid_t pid = -1;
     const int failed =
-        posix_spawn(&pid, program.c_str(), &actions, nullptr, arguments.data(), environ);
+        posix_spawn(&pid, program.c_str(), &actions, &attributes, arguments.data(), environ);
+    posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     if (failed != 0) {
         return fail(ErrorCode::FileUnreadable,
@@ -186,7 +192,8 @@ Result<Volume> adopt(Volume volume, File memory, const LoadProgress& last) {
         return broken(last, "its reader sent no voxels");
     }
     const auto size = static_cast<std::size_t>(*asked);
-    void* mapping = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE, memory.number(), 0);
+    // Shared with nobody, for the reader has ended; written to without a copy.
+    void* mapping = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, memory.number(), 0);
     if (mapping == MAP_FAILED) {
         return fail(ErrorCode::FileUnreadable,
                     fmt::format("{}: out of memory for {} bytes of voxels; close other programs or "
@@ -238,6 +245,7 @@ Result<Volume> readApart(const std::filesystem::path& path, const LoadOptions& o
             if (!wanted) {
                 return tl::unexpected(wanted.error());
             }
+            send(child->socket(), std::string(1, static_cast<char>(Packet::Header)));
             continue;
         }
         const int signal = child->end();

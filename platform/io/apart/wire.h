@@ -21,7 +21,7 @@ enum class Packet : std::uint8_t { Request, Progress, Header, Done, Failed };
 std::string encodeRequest(const std::string& path, const LoadOptions& options);
 std::string encodeProgress(const LoadProgress& progress);
 /// The volume without its voxels, which travel as a file of memory; `kind`: Header, before they are
-/// read, or Done.
+/// read, or Done. They are read once any packet comes back for the header.
 std::string encodeVolume(Packet kind, const Volume& volume);
 std::string encodeFailed(const Error& error);
 

@@ -2,7 +2,6 @@
 
 #include <csetjmp>
 #include <cstdio>
-#include <memory>
 
 // jpeglib.h needs <cstdio> before it.
 #include <jpeglib.h>
@@ -41,13 +40,14 @@ void note(j_common_ptr info, int level) {
 }
 
 /// Nothing in here may need to be destroyed: the library leaves by a jump.
-bool decode(jpeg_decompress_struct& info, Report& report, std::FILE* file, int width, int height,
-            std::byte* pixels) {
+bool decode(jpeg_decompress_struct& info, Report& report, std::string_view file, int width,
+            int height, std::byte* pixels) {
     if (setjmp(report.escape) != 0) {
         return false;
     }
     jpeg_create_decompress(&info);
-    jpeg_stdio_src(&info, file);
+    jpeg_mem_src(&info, reinterpret_cast<const unsigned char*>(file.data()),
+                 static_cast<unsigned long>(file.size()));
     jpeg_read_header(&info, TRUE);
     if (info.image_width != static_cast<JDIMENSION>(width) ||
         info.image_height != static_cast<JDIMENSION>(height) || info.num_components != 1) {
@@ -68,19 +68,14 @@ bool decode(jpeg_decompress_struct& info, Report& report, std::FILE* file, int w
 
 } // namespace
 
-bool readGreyJpeg(const std::filesystem::path& path, int width, int height, std::byte* pixels) {
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                               std::fclose);
-    if (!file) {
-        return false;
-    }
+bool readGreyJpeg(std::string_view file, int width, int height, std::byte* pixels) {
     Report report = {};
     jpeg_decompress_struct info = {};
     info.err = jpeg_std_error(&report.manager);
     report.manager.error_exit = leave;
     report.manager.emit_message = note;
     report.manager.output_message = stayQuiet;
-    const bool isRead = decode(info, report, file.get(), width, height, pixels);
+    const bool isRead = decode(info, report, file, width, height, pixels);
     jpeg_destroy_decompress(&info);
     return isRead;
 }

@@ -87,7 +87,9 @@ Result<std::int64_t> chosenChannel(const std::filesystem::path& path, const Imag
 Result<std::unique_ptr<ImageSource>> openImage(const std::filesystem::path& path,
                                                const LoadOptions& options) {
     return choiceIn(path, options).and_then([&](const ImageChoice& choice) {
-        return isTiff(path) ? openTiff(path, choice) : openOtherImage(path, choice);
+        std::ifstream file(path, std::ios::binary);
+        return isTiff(file) ? openTiff(path, std::move(file), choice)
+                            : openOtherImage(path, std::move(file), choice);
     });
 }
 

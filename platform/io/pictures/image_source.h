@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -37,7 +38,7 @@ public:
     virtual const ImageFacts& facts() const = 0;
     /// Pixels of slice `index` of facts(), upright. Fails: FileUnreadable, FileTruncated.
     virtual Result<void> read(std::size_t index, std::byte* target) = 0;
-    /// Closes the file until the next read().
+    /// Closes the file, or lets its bytes go, until the next read(): it is opened twice in all.
     virtual void rest() = 0;
 };
 
@@ -60,11 +61,11 @@ Result<ImageChoice> choiceIn(const std::filesystem::path& path, const LoadOption
 Result<std::int64_t> chosenChannel(const std::filesystem::path& path, const ImageChoice& choice,
                                    std::int64_t count, bool isColour);
 
-/// One for each family of formats.
-Result<std::unique_ptr<ImageSource>> openTiff(const std::filesystem::path& path,
+/// One for each family of formats. `file` is open, at its beginning; it is closed again.
+Result<std::unique_ptr<ImageSource>> openTiff(const std::filesystem::path& path, std::ifstream file,
                                               const ImageChoice& choice);
 Result<std::unique_ptr<ImageSource>> openOtherImage(const std::filesystem::path& path,
-                                                    const ImageChoice& choice);
+                                                    std::ifstream file, const ImageChoice& choice);
 
 /// Millimetres from what an image states, with a note of what was assumed.
 struct ImageLengths {

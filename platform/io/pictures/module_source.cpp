@@ -33,15 +33,14 @@ public:
         : path_(std::move(path)), file_(nullptr, [](ImageFile*) noexcept {}) {}
 
     /// Once, before anything else.
-    Result<void> open(const ImageChoice& choice) {
-        std::error_code error;
-        const std::uintmax_t bytes = std::filesystem::file_size(path_, error);
-        if (error || bytes == 0) {
+    Result<void> open(std::ifstream file, const ImageChoice& choice) {
+        take(file);
+        if (bytes_.empty()) {
             return fail(ErrorCode::FileUnreadable,
                         fmt::format("{}: is empty; check where it comes from, and fetch it again",
                                     path_.string()));
         }
-        const ImageExtent extent = extentOf(path_);
+        const ImageExtent extent = extentOf(bytes_);
         if (!extent.isWhole) {
             return fail(ErrorCode::FileTruncated,
                         fmt::format("{}: the file ends before its image does: it was cut off; "
@@ -55,25 +54,25 @@ public:
             return tl::unexpected(module.error());
         }
         module_ = *module;
-        return openFile().and_then([&] { return describe(choice, static_cast<double>(bytes)); });
+        return openImage().and_then(
+            [&] { return describe(choice, static_cast<double>(bytes_.size())); });
     }
 
     const ImageFacts& facts() const override { return facts_; }
 
     Result<void> read(std::size_t index, std::byte* target) override {
         const bool isGreyJpeg = isJpeg_ && channels_ == 1;
-        if (const Result<void> opened = file_ || isGreyJpeg ? Result<void>() : openFile();
-            !opened) {
+        const ImageSlice& slice = facts_.slices[index];
+        if (const Result<void> opened = openAgain(isGreyJpeg, index); !opened) {
             return opened;
         }
-        const ImageSlice& slice = facts_.slices[index];
         const std::size_t voxelBytes = bytesPerVoxel(slice.type);
         const std::size_t count = static_cast<std::size_t>(slice.size.x) * slice.size.y;
         std::vector<std::byte> stored(orientation_ == 1 ? 0 : count * voxelBytes);
         std::byte* pixels = orientation_ == 1 ? target : stored.data();
         const glm::ivec2 size = storedSize(slice.size);
         const bool isRead =
-            isGreyJpeg ? readGreyJpeg(path_, size.x, size.y, pixels)
+            isGreyJpeg ? readGreyJpeg(bytes_, size.x, size.y, pixels)
                        : module_->read(file_.get(), static_cast<int>(index), channel_, pixels);
         if (!isRead) {
             return fail(ErrorCode::FileTruncated,
@@ -91,11 +90,46 @@ public:
         return {};
     }
 
-    void rest() override { file_.reset(); }
+    void rest() override {
+        file_.reset();
+        bytes_ = {};
+    }
 
 private:
-    Result<void> openFile() {
-        file_ = {module_->open(path_.c_str()), module_->close};
+    void take(std::ifstream& file) {
+        file.seekg(0, std::ios::end);
+        const auto size = static_cast<std::streamoff>(file.tellg());
+        file.seekg(0);
+        bytes_.resize(static_cast<std::size_t>(std::max<std::streamoff>(size, 0)));
+        file.read(bytes_.data(), static_cast<std::streamsize>(bytes_.size()));
+        bytes_.resize(static_cast<std::size_t>(file.gcount()));
+    }
+
+    /// For the pixels of a slice. The file must not have become another since it was looked at.
+    Result<void> openAgain(bool bytesAlone, std::size_t index) {
+        if (bytes_.empty()) {
+            std::ifstream file(path_, std::ios::binary);
+            take(file);
+        }
+        if (bytesAlone || file_) {
+            return {};
+        }
+        return openImage().and_then([&]() -> Result<void> {
+            const ImageSlice& slice = facts_.slices[index];
+            const glm::ivec2 size = storedSize(slice.size);
+            ImagePage page;
+            const bool isSame = module_->describe(file_.get(), static_cast<int>(index), &page) &&
+                                glm::ivec2(page.width, page.height) == size &&
+                                page.type == slice.type && channel_ < page.channels;
+            return isSame ? Result<void>()
+                          : fail(ErrorCode::FileUnreadable,
+                                 fmt::format("{}: changed while it was read; read it again",
+                                             path_.string()));
+        });
+    }
+
+    Result<void> openImage() {
+        file_ = {module_->open(path_.c_str(), bytes_.data(), bytes_.size()), module_->close};
         if (!file_) {
             const std::string ending = lowerCase(path_.extension().string());
             const bool isTiffByName = ending == ".tif" || ending == ".tiff";
@@ -190,6 +224,7 @@ private:
 
     std::filesystem::path path_;
     const ImageModule* module_ = nullptr;
+    std::string bytes_; // of the whole file, outlive file_
     std::unique_ptr<ImageFile, void (*)(ImageFile*) noexcept> file_;
     int highest_ = 0;
     bool isJpeg_ = false;
@@ -202,10 +237,11 @@ private:
 } // namespace
 
 Result<std::unique_ptr<ImageSource>> openOtherImage(const std::filesystem::path& path,
-                                                    const ImageChoice& choice) {
+                                                    std::ifstream file, const ImageChoice& choice) {
     auto source = std::make_unique<ModuleSource>(path);
-    return source->open(choice).map(
-        [&] { return std::unique_ptr<ImageSource>(std::move(source)); });
+    return source->open(std::move(file), choice).map([&] {
+        return std::unique_ptr<ImageSource>(std::move(source));
+    });
 }
 
 } // namespace slabcast

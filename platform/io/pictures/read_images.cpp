@@ -19,9 +19,6 @@ struct StackFile {
     std::unique_ptr<ImageSource> source;
 };
 
-/// Files stay open between the look at them and the reading, if they are as few as this.
-constexpr std::size_t kOpenAtOnce = 100;
-
 Result<std::vector<StackFile>> lookAt(const std::vector<std::filesystem::path>& paths,
                                       const LoadOptions& options) {
     std::vector<StackFile> files;
@@ -31,9 +28,7 @@ Result<std::vector<StackFile>> lookAt(const std::vector<std::filesystem::path>& 
         if (!source) {
             return tl::unexpected(source.error());
         }
-        if (paths.size() > kOpenAtOnce) {
-            (*source)->rest();
-        }
+        (*source)->rest(); // there may be more than can be open, or kept, at once
         files.push_back({path, std::move(*source)});
     }
     return files;

@@ -68,8 +68,8 @@ struct Entry {
 
 class Parser {
 public:
-    explicit Parser(const std::filesystem::path& path)
-        : path_(path), file_(path, std::ios::binary) {
+    Parser(const std::filesystem::path& path, std::ifstream file)
+        : path_(path), file_(std::move(file)) {
         std::error_code error;
         const std::uintmax_t size = std::filesystem::file_size(path, error);
         result_.byteCount = error ? 0 : size;
@@ -397,12 +397,18 @@ bool canHold(const TiffDirectory& page, double pixelBytes) {
     return pixelBytes <= most * static_cast<double>(page.storedBytes);
 }
 
-bool isTiff(const std::filesystem::path& path) {
-    return Parser(path).isTiff();
+bool isTiff(std::istream& file) {
+    std::array<char, 4> mark{};
+    file.read(mark.data(), mark.size());
+    file.clear();
+    file.seekg(0);
+    const std::string_view start(mark.data(), mark.size());
+    return start == std::string_view("II*\0", 4) || start == std::string_view("MM\0*", 4) ||
+           start == std::string_view("II+\0", 4) || start == std::string_view("MM\0+", 4);
 }
 
-Result<TiffFile> readTiffDirectories(const std::filesystem::path& path) {
-    Parser parser(path);
+Result<TiffFile> readTiffDirectories(const std::filesystem::path& path, std::ifstream file) {
+    Parser parser(path, std::move(file));
     if (!parser.isTiff()) {
         return fail(ErrorCode::FileUnreadable,
                     fmt::format("{}: is no TIFF; check what the file holds", path.string()));

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -44,14 +45,14 @@ struct TiffFile {
     std::vector<TiffDirectory> pages;
 };
 
-/// By its first four bytes: TIFF or BigTIFF.
-bool isTiff(const std::filesystem::path& path);
+/// By a file's first four bytes: TIFF or BigTIFF. The file is at its beginning again after that.
+bool isTiff(std::istream& file);
 
-/// All directories in the file's chain; those that only other tags point at are left out. Every
-/// strip and tile lies within the file, and is not too short for the pixels of its page. Cost: the
-/// directories. Fails: FileTruncated (cut), FileUnreadable (no TIFF, damaged), EmptyVolume (a page
-/// without pixels), UnsupportedType. Tested by: io_tiff_test.cpp
-Result<TiffFile> readTiffDirectories(const std::filesystem::path& path);
+/// All directories in the chain of `file`, open; those that only other tags point at are left out.
+/// Every strip and tile lies within the file, and is not too short for the pixels of its page.
+/// Cost: the directories. Fails: FileTruncated (cut), FileUnreadable (no TIFF, damaged),
+/// EmptyVolume (a page without pixels), UnsupportedType. Tested by: io_tiff_test.cpp
+Result<TiffFile> readTiffDirectories(const std::filesystem::path& path, std::ifstream file);
 
 /// Whether the stored bytes of a page can hold so many bytes of pixels: compression has limits.
 bool canHold(const TiffDirectory& page, double pixelBytes);

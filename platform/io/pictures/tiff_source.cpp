@@ -73,8 +73,8 @@ public:
     explicit TiffSource(std::filesystem::path path) : path_(std::move(path)) {}
 
     /// Once, before anything else.
-    Result<void> open(const ImageChoice& choice) {
-        Result<TiffFile> file = readTiffDirectories(path_);
+    Result<void> open(std::ifstream stream, const ImageChoice& choice) {
+        Result<TiffFile> file = readTiffDirectories(path_, std::move(stream));
         if (!file) {
             return tl::unexpected(file.error());
         }
@@ -336,11 +336,12 @@ private:
 
 } // namespace
 
-Result<std::unique_ptr<ImageSource>> openTiff(const std::filesystem::path& path,
+Result<std::unique_ptr<ImageSource>> openTiff(const std::filesystem::path& path, std::ifstream file,
                                               const ImageChoice& choice) {
     auto source = std::make_unique<TiffSource>(path);
-    return source->open(choice).map(
-        [&] { return std::unique_ptr<ImageSource>(std::move(source)); });
+    return source->open(std::move(file), choice).map([&] {
+        return std::unique_ptr<ImageSource>(std::move(source));
+    });
 }
 
 } // namespace slabcast

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "platform/io/volumes/inflater.h"
 #include "platform/io/volumes/voxel_text.h"
@@ -44,12 +45,14 @@ Result<std::int64_t> sizeOf(const std::string& name, const Path& file) {
     return bytes;
 }
 
-/// At the first voxel, or where the deflated stream begins; returns that place, which lies behind
-/// the end where there is none.
-std::int64_t seekBegin(std::ifstream& stream, const VoxelSource& source, std::int64_t bytes,
-                       std::int64_t fileBytes) {
+/// Of the first voxel, or of the deflated stream; behind the end where there is none.
+std::int64_t placeOfBegin(std::ifstream& stream, const Path& file, const VoxelSource& source,
+                          std::int64_t bytes, std::int64_t fileBytes) {
     std::int64_t place = source.headerBytes;
-    if (source.lineSkip > 0) {
+    if (source.lineSkip > 0) { // opened only now: often its size tells enough
+        if (!stream.is_open()) {
+            stream.open(file, std::ios::binary);
+        }
         stream.seekg(place);
         for (std::int64_t i = 0; i < source.lineSkip && stream; ++i) {
             stream.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
@@ -62,8 +65,6 @@ std::int64_t seekBegin(std::ifstream& stream, const VoxelSource& source, std::in
                                      : behind + source.byteSkip + 1;
         place = place < source.headerBytes ? fileBytes + 1 : place;
     }
-    stream.clear();
-    stream.seekg(place);
     return place;
 }
 
@@ -136,14 +137,12 @@ tl::unexpected<Error> damaged(const Wanted& wanted, const char* how) {
 }
 
 /// How many bytes of the stream come before the first voxel of the file.
-Result<std::int64_t> inflatedBegin(const VoxelSource& source, std::int64_t place,
-                                   const Wanted& wanted) {
+Result<std::int64_t> inflatedBegin(const VoxelSource& source, std::ifstream& stream,
+                                   std::int64_t place, const Wanted& wanted) {
     if (source.byteSkip >= 0) {
         return source.byteSkip;
     }
-    std::ifstream stream(wanted.file, std::ios::binary); // only its end tells where they begin
-    stream.seekg(place);
-    Inflater inflater(stream, source.deflatedBytes);
+    Inflater inflater(stream, source.deflatedBytes); // only its end tells where they begin
     std::int64_t all = 0;
     for (std::int64_t now = kChunkBytes; now == kChunkBytes; all += now) {
         now = inflater.take(nullptr, kChunkBytes);
@@ -151,12 +150,14 @@ Result<std::int64_t> inflatedBegin(const VoxelSource& source, std::int64_t place
             return tl::unexpected(told.error());
         }
     }
+    stream.clear();
+    stream.seekg(place);
     return all - wanted.bytes + source.byteSkip + 1;
 }
 
 Result<void> readDeflated(const VoxelSource& source, std::ifstream& stream, std::int64_t place,
                           const Wanted& wanted) {
-    const Result<std::int64_t> begin = inflatedBegin(source, place, wanted);
+    const Result<std::int64_t> begin = inflatedBegin(source, stream, place, wanted);
     if (!begin) {
         return tl::unexpected(begin.error());
     }
@@ -215,7 +216,9 @@ Result<void> readFile(const VoxelSource& source, StoredType type, const Wanted& 
         return tl::unexpected(fileBytes.error());
     }
     std::ifstream stream(wanted.file, std::ios::binary);
-    const std::int64_t place = seekBegin(stream, source, wanted.bytes, *fileBytes);
+    const std::int64_t place = placeOfBegin(stream, wanted.file, source, wanted.bytes, *fileBytes);
+    stream.clear();
+    stream.seekg(place);
     switch (source.encoding) {
     case DataEncoding::Deflate:
         return readDeflated(source, stream, place, wanted);
@@ -257,17 +260,18 @@ Result<void> checkVoxelFiles(const std::string& name, const VoxelSource& source,
         if (!fileBytes) {
             return tl::unexpected(fileBytes.error());
         }
-        std::ifstream stream(file, std::ios::binary);
-        if (!stream) {
+        if (access(file.c_str(), R_OK) != 0) {
             return fail(ErrorCode::FileUnreadable,
                         fmt::format("{}: its voxels are in {}, which cannot be opened; check its "
                                     "permissions",
                                     name, file.string()));
         }
         const std::int64_t least = leastFileBytes(source.encoding, type, each);
-        const std::int64_t behind = source.encoding == DataEncoding::Deflate
-                                        ? *fileBytes
-                                        : *fileBytes - seekBegin(stream, source, each, *fileBytes);
+        std::ifstream stream;
+        const std::int64_t behind =
+            source.encoding == DataEncoding::Deflate
+                ? *fileBytes
+                : *fileBytes - placeOfBegin(stream, file, source, each, *fileBytes);
         if (behind < least) {
             return tooShort(name, file, each, *fileBytes);
         }

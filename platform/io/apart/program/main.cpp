@@ -80,8 +80,11 @@ int run() {
             _exit(1); // nobody waits for it any more
         }
     };
-    options.admit = [](const Volume& header) -> Result<void> { // who does not want it ends this
+    options.admit = [](const Volume& header) -> Result<void> {
         send(kReaderSocket, encodeVolume(Packet::Header, header));
+        if (receive(kReaderSocket).packet.empty()) {
+            _exit(1); // who does not want it has gone
+        }
         return {};
     };
     Result<Volume> volume = loadVolume(request->path, options);
