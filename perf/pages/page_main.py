@@ -1,6 +1,7 @@
 """From a folder of measurements to its page: what all page makers do alike."""
 
 import os
+import signal
 import sys
 import tempfile
 from importlib import import_module
@@ -27,6 +28,7 @@ def main(usage, arguments, load, page_module):
     if len(arguments) != 1 or arguments[0].startswith("-"):
         print(usage.strip(), file=sys.stderr)
         return 2
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # as a failure: nothing half-written stays
     folder = Path(arguments[0])
     program = Path(sys.argv[0]).stem
     try:

@@ -156,7 +156,8 @@ ParsedCommand parseCommandLine(std::span<Command> commands, int argc, char** arg
     app.set_help_all_flag("--help-all", "help of all commands");
     app.footer(
         "Start with: slabcast render phantom:marschner-lobb -o picture.png\n"
-        "Exit status: 0 done; 1 failed, with one line that says why and what to do; 2 bad usage");
+        "Exit status: 0 done; 1 failed, with one line that says why and what to do; 2 bad usage; "
+        "130 interrupted by Ctrl-C");
     std::vector<std::unique_ptr<Binding>> bindings;
     for (Command& command : commands) {
         bindings.push_back(std::make_unique<Binding>(app, command));

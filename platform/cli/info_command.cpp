@@ -35,7 +35,7 @@ Result<void> infoCommand(const InputOptions& options) {
         return tl::unexpected(volume.error());
     }
     const VolumeGeometry& g = volume->geometry;
-    const VolumeStatistics s = computeStatistics(*volume);
+    const VolumeStatistics s = statisticsOf(*volume);
     const glm::dvec3 box = glm::dvec3(g.dims) * g.spacingMm;
     const Modality modality = likelyModality(*volume, s);
     fmt::print("{}\n", volume->name);

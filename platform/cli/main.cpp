@@ -13,6 +13,7 @@
 #include "platform/cli/command_line.h"
 #include "platform/cli/command_parser.h"
 #include "platform/cli/commands.h"
+#include "platform/cli/interrupt.h"
 
 namespace {
 
@@ -99,6 +100,7 @@ int withWrittenOutput(int status) {
 } // namespace
 
 int main(int argc, char** argv) try {
+    endWhenInterrupted();
     // EGL's loader else reports on stderr, over several lines, what our own error says in one.
     setenv("EGL_LOG_LEVEL", "fatal", 0);
     return withWrittenOutput(run(argc, argv));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/core.h>
+
 #include "core/scene/memory_forecast.h"
 #include "platform/cli/advice.h"
 #include "platform/cli/progress.h"
@@ -39,6 +41,23 @@ glm::ivec3 drawnDims(glm::ivec3 dims, const InputOptions& input) {
     return input.cubeEdge > 0 ? glm::ivec3(input.cubeEdge) : (dims - 1) / input.downsample + 1;
 }
 
+/// Whether the device has room for it now; names the --downsample for which it has.
+Result<void> checkRoomFor(glm::ivec3 dims, const InputOptions& input, std::int64_t bytesPerTexel) {
+    const Result<void> room = checkRoom(drawnDims(dims, input), bytesPerTexel);
+    if (room || input.cubeEdge > 0 || room.error().code != ErrorCode::DeviceOutOfMemory) {
+        return room;
+    }
+    constexpr int kMost = 1024;
+    int enough = input.downsample + 1;
+    while (enough < kMost && !checkRoom((dims - 1) / enough + 1, bytesPerTexel)) {
+        ++enough;
+    }
+    return fail(ErrorCode::DeviceOutOfMemory,
+                fmt::format("the volume has {}x{}x{} voxels, for which the GPU has no memory; load "
+                            "it with --downsample {}",
+                            dims.x, dims.y, dims.z, enough));
+}
+
 } // namespace
 
 InputOptions admittingWhatFits(InputOptions input, const gl::Caps& caps, const StageDesc& desc) {
@@ -51,8 +70,11 @@ InputOptions admittingWhatFits(InputOptions input, const gl::Caps& caps, const S
         const glm::ivec3 dims = header.geometry.dims;
         const glm::ivec3 drawn = drawnDims(dims, input);
         const Result<void> fits = checkFits(drawn, least, caps, budget);
+        if (fits) {
+            return checkRoomFor(dims, input, least);
+        }
         // Asked of all voxels, it names the --downsample that does.
-        return fits || input.cubeEdge > 0 ? fits : checkFits(dims, least, caps, budget);
+        return input.cubeEdge > 0 ? fits : checkFits(dims, least, caps, budget);
     };
     return fitting;
 }

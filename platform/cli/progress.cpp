@@ -17,6 +17,7 @@ void showLine(const std::string& line) {
 } // namespace
 
 void say(const std::string& line) {
+    showLine(""); // what is shown there is no part of it
     std::fprintf(stderr, "slabcast: %s\n", line.c_str());
 }
 

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "platform/cli/commit.h"
+#include "platform/cli/interrupt.h"
 #include "platform/cli/picture_file.h"
 #include "platform/cli/session.h"
 #include "platform/io/atomic_file.h"
@@ -33,12 +34,24 @@ bool run(std::vector<std::string> words) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
+    std::optional<SignalsHeld> held(std::in_place);
+    posix_spawnattr_t attributes; // a group of its own: Ctrl-C is for this program
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
+    posix_spawnattr_setpgroup(&attributes, 0);
+    posix_spawnattr_setsigmask(&attributes, &held->before());
     pid_t child = 0;
     const bool started =
-        posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ) == 0;
+        posix_spawnp(&child, arguments[0], &actions, &attributes, arguments.data(), environ) == 0;
+    posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
+    if (!started) {
+        return false;
+    }
+    const Awaited ends(child);
+    held.reset();
     int status = 0;
-    return started && waitpid(child, &status, 0) == child && status == 0;
+    return waitpid(child, &status, 0) == child && status == 0;
 }
 
 } // namespace
@@ -47,6 +60,10 @@ DiskFolder::DiskFolder(fs::path path, std::string inner)
     : path_(std::move(path)), inner_(std::move(inner)) {
     std::error_code ignored; // what cannot be asked after is not this program's to remove
     made_ = fs::status(path_, ignored).type() == fs::file_type::not_found;
+    if (made_) {
+        unfinished_.emplace(path_);
+        unfinishedInner_.emplace(path_ / inner_);
+    }
 }
 
 DiskFolder::~DiskFolder() {

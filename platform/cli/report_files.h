@@ -1,15 +1,17 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "perf/report_folder.h"
 #include "perf/report_json.h"
+#include "platform/io/unfinished.h"
 
 namespace slabcast {
 
 /// A report's folder on disk: made before long work, gone again, if it was made here, where that
-/// work fails before anything is written.
+/// work fails, or is interrupted, before anything is written.
 class DiskFolder : public ReportFolder {
 public:
     /// With a folder of this name in it, where one is named.
@@ -36,6 +38,8 @@ private:
     std::filesystem::path path_;
     std::string inner_;
     bool made_; // nothing was there before
+    std::optional<Unfinished> unfinished_;
+    std::optional<Unfinished> unfinishedInner_;
 };
 
 /// This run, of the command as it was typed.

@@ -32,6 +32,33 @@ void sayUnknownMasks(const std::string& mask) {
     }
 }
 
+bool isPhantom(const InputOptions& options) {
+    return options.volume.starts_with("phantom:");
+}
+
+Result<Volume> phantomOf(const InputOptions& options) {
+    const Progress progress("making " + options.volume);
+    Result<Volume> phantom = makePhantom(options.volume);
+    return phantom && options.load.admit
+               ? options.load.admit(*phantom).map([&] { return std::move(*phantom); })
+               : phantom;
+}
+
+Result<Volume> fileOf(const InputOptions& options) {
+    Progress progress("reading " + options.volume);
+    std::string shown;
+    LoadOptions load = options.load;
+    load.progress = [&](const LoadProgress& now) {
+        std::string line =
+            fmt::format("reading {}: {:.0f} %", now.file.filename().string(), 100.0 * now.done);
+        if (line != shown) {
+            progress.show(line);
+            shown = std::move(line);
+        }
+    };
+    return loadVolume(options.volume, load);
+}
+
 } // namespace
 
 Result<Session> openSession() {
@@ -51,15 +78,12 @@ Result<Session> openSession() {
 }
 
 Result<Volume> openVolume(const InputOptions& options) {
-    Result<Volume> volume = tl::unexpected(Error{});
-    if (options.volume.rfind("phantom:", 0) == 0) {
-        volume = makePhantom(options.volume);
-    } else {
-        volume = loadVolume(options.volume, options.load);
-    }
+    Result<Volume> volume = isPhantom(options) ? phantomOf(options) : fileOf(options);
     for (std::size_t i = 0; volume && i < volume->notes.size(); ++i) {
         say(fmt::format("{}: {}", options.volume, volume->notes[i]));
     }
+    const Progress progress(options.downsample > 1 || options.cubeEdge > 0 ? "averaging voxels"
+                                                                           : "");
     if (volume && options.downsample > 1) {
         volume = downsample(*volume, glm::ivec3(options.downsample));
     }
@@ -67,6 +91,11 @@ Result<Volume> openVolume(const InputOptions& options) {
         volume = resample(*volume, glm::ivec3(options.cubeEdge));
     }
     return volume;
+}
+
+VolumeStatistics statisticsOf(const Volume& volume) {
+    const Progress progress("looking at the values of " + volume.name);
+    return computeStatistics(volume);
 }
 
 std::int64_t peakHostBytes() {

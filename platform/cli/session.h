@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/scene/device.h"
-#include "core/volume/volume.h"
+#include "core/volume/statistics.h"
 #include "platform/egl/egl_context.h"
 #include "platform/io/load_volume.h"
 
@@ -31,7 +31,10 @@ struct InputOptions {
     bool keepValues = false; // the volume's own values too, for references
 };
 
+/// Shows at the terminal how far it is.
 Result<Volume> openVolume(const InputOptions& options);
+/// computeStatistics(), with a line at the terminal.
+VolumeStatistics statisticsOf(const Volume& volume);
 
 /// Host memory at its peak so far, bytes (VmHWM).
 std::int64_t peakHostBytes();

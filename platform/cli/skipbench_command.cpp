@@ -35,10 +35,13 @@ Result<TransferFunction> otherPreset(const Stage& stage) {
     return presetTransferFunction("angio", scene.statistics());
 }
 
-/// That all volumes can be read, before minutes are spent on the first.
-Result<void> checkVolumes(const SkipbenchOptions& options) {
-    for (const std::string& input : options.volumes) {
-        const Result<Volume> volume = openVolume({.volume = input});
+/// That all volumes fit and can be read, before minutes are spent on the first.
+Result<void> checkVolumes(const SkipbenchOptions& options, const Session& session) {
+    for (const std::string& name : options.volumes) {
+        InputOptions input = options.input;
+        input.volume = name;
+        const Result<Volume> volume = openVolume(
+            admittingWhatFits(std::move(input), session.device.caps(), stageDescOf(options)));
         if (!volume) {
             return tl::unexpected(volume.error());
         }
@@ -69,12 +72,14 @@ Result<void> write(DiskFolder& folder, const skipbench::Report& report) {
 
 Result<void> skipbenchCommand(const SkipbenchOptions& options, const std::string& command) {
     DiskFolder folder(options.outputFolder);
-    const Result<Session> session =
-        checkVolumes(options).and_then([&] { return folder.make("skipbench.json"); }).and_then([] {
-            return openSession();
-        });
+    const Result<Session> session = openSession();
     if (!session) {
         return tl::unexpected(session.error());
+    }
+    if (const Result<void> ready =
+            checkVolumes(options, *session).and_then([&] { return folder.make("skipbench.json"); });
+        !ready) {
+        return ready;
     }
     const skipbench::Desc desc{.volumes = options.volumes,
                                .stage = stageDescOf(options),

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "platform/io/unfinished.h"
+
 namespace slabcast {
 
 namespace {
@@ -29,7 +31,8 @@ std::filesystem::path temporaryBeside(const std::filesystem::path& path) {
 /// Takes the temporary file away unless it was renamed.
 class TemporaryFile {
 public:
-    explicit TemporaryFile(std::filesystem::path path) : path_(std::move(path)) {}
+    explicit TemporaryFile(std::filesystem::path path)
+        : path_(std::move(path)), unfinished_(path_) {}
     ~TemporaryFile() {
         std::error_code ignored;
         std::filesystem::remove(path_, ignored);
@@ -41,6 +44,7 @@ public:
 
 private:
     std::filesystem::path path_;
+    Unfinished unfinished_;
 };
 
 } // namespace

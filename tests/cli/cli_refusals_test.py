@@ -201,8 +201,22 @@ class BadDevices(CliTest):
         line = self.render_fails(*budget, cause="110592 bytes.*10485", remedy=r"--downsample \d+")
         fitting = int(re.search(r"--downsample (\d+)", line).group(1))
         self.assertEqual(fitting, 3)
-        self.render_fails(*budget, "--downsample", fitting - 1, cause="13824 bytes", remedy="--downsample")
+        self.render_fails(*budget, "--downsample", fitting - 1, cause="110592 bytes", remedy="--downsample 3$")
         self.assertEqual(self.stats(*budget, *QUICK, "--downsample", fitting)["volume"]["dims"], [16, 16, 16])
+
+    def test_budget_is_asked_before_a_file_is_read(self):
+        """As of phantoms. Of 8 GiB, which the test could not read in time: all of it is a hole of the disk."""
+        with open(self.folder / "huge.raw", "wb") as file:
+            file.truncate(2048 ** 3)
+        huge = ("huge.raw", "--raw", "2048x2048x2048,uint8,1x1x1", "--gpu-budget", "1000")
+        self.render_fails(*huge, cause="8589934592 bytes.*1048576000", remedy="--downsample 3$")
+        self.render_fails(*huge, "--downsample", "2", cause="8589934592 bytes", remedy="--downsample 3$")
+        self.fails("error", *huge, "--out", "report", cause="8589934592 bytes", remedy="--downsample 3$")
+        # What fits once it is smaller is read.
+        (self.folder / "small.raw").write_bytes(bytes(range(64)) * 1000)
+        small = ("small.raw", "--raw", "40x40x40,uint8,1x1x1", "--gpu-budget", "0.01")
+        self.render_fails(*small, cause="64000 bytes", remedy="--downsample 2$")
+        self.assertEqual(self.stats(*small, *QUICK, "--downsample", "2")["volume"]["dims"], [20, 20, 20])
 
     def test_budget_counts_what_is_uploaded(self):
         """A cube of 48 has 442368 bytes as colours of four, 110592 as voxels, and 55296 as colours of half the edge."""

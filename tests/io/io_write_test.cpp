@@ -4,6 +4,7 @@
 
 #include "platform/io/atomic_file.h"
 #include "platform/io/save_image.h"
+#include "platform/io/unfinished.h"
 
 namespace slabcast::test {
 namespace {
@@ -38,6 +39,29 @@ TEST_F(WriteTest, failedWriterLeavesTheOldFile) {
     EXPECT_EQ(written.error().code, ErrorCode::Internal);
     EXPECT_EQ(read(path), "old");
     EXPECT_EQ(fileCount(), 1);
+}
+
+TEST_F(WriteTest, whatIsUnfinishedGoesWhereTheProgramIsInterrupted) {
+    const auto kept = write("kept.txt", "old");
+    const Result<void> written =
+        writeFileAtomically(kept, [&](const std::filesystem::path& temporary) -> Result<void> {
+            std::ofstream(temporary) << "half";
+            std::filesystem::create_directories(at("made/inner"));
+            std::filesystem::create_directories(at("full"));
+            write("full/result", "whole");
+            const Unfinished made(at("made"));
+            const Unfinished inner(at("made/inner"));
+            const Unfinished full(at("full"));
+            Unfinished::removeAll();
+            EXPECT_FALSE(std::filesystem::exists(temporary));
+            return fail(ErrorCode::Internal, "stopped");
+        });
+    EXPECT_FALSE(written);
+    EXPECT_EQ(read(kept), "old");
+    EXPECT_FALSE(std::filesystem::exists(at("made")));
+    EXPECT_EQ(read(at("full/result")), "whole");
+    Unfinished::removeAll(); // nothing is any more
+    EXPECT_EQ(fileCount(), 2);
 }
 
 void expectUnwritable(const Result<void>& written, const std::filesystem::path& path) {
