@@ -5,6 +5,8 @@
 #include <exception>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <OpenImageIO/filesystem.h>
@@ -57,12 +59,45 @@ auto withoutExceptions(const Body& body) noexcept -> decltype(body()) {
     }
 }
 
+/// The library's name of a format by its first bytes, else by the ending of the name, which is the
+/// name of the format too where it has no first bytes of its own.
+std::string formatOf(const std::string& path, std::string_view bytes) {
+    constexpr std::array<std::pair<std::string_view, const char*>, 6> kMarks = {
+        {{"\x89PNG", "png"},
+         {"\xFF\xD8\xFF", "jpeg"},
+         {"BM", "bmp"},
+         {"P5", "pnm"},
+         {"P2", "pnm"},
+         {"\x76\x2F\x31\x01", "openexr"}}};
+    for (const auto& [mark, format] : kMarks) {
+        if (bytes.starts_with(mark)) {
+            return format;
+        }
+    }
+    return OIIO::Filesystem::extension(path, false);
+}
+
+/// Without the library's own look at the file, which opens it by its name, twice.
+std::unique_ptr<OIIO::ImageInput> openBytes(const char* path, const OIIO::ImageSpec& wishes,
+                                            OIIO::Filesystem::IOMemReader& bytes) {
+    const auto all = bytes.buffer();
+    auto input = OIIO::ImageInput::create(
+        formatOf(path, {reinterpret_cast<const char*>(all.data()), std::size_t(all.size())}));
+    OIIO::ImageSpec spec;
+    const bool isOpen = input && input->supports("ioproxy") && input->set_ioproxy(&bytes) &&
+                        input->open(path, spec, wishes);
+    return isOpen ? std::move(input) : nullptr;
+}
+
 ImageFile* open(const char* path, const void* bytes, std::size_t count) noexcept {
     return withoutExceptions([&]() -> ImageFile* {
         OIIO::ImageSpec wishes;
         wishes.attribute("oiio:UnassociatedAlpha", 1); // channels as they are stored
         auto memory = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes, count);
-        auto input = OIIO::ImageInput::open(path, &wishes, memory.get());
+        auto input = openBytes(path, wishes, *memory);
+        if (!input) { // of another format than it seems to be, or read from a file alone
+            input = OIIO::ImageInput::open(path, &wishes);
+        }
         if (!input) {
             error = OIIO::geterror();
             return nullptr;
