@@ -80,7 +80,7 @@ CellVisibility visibilityOfCodes(const TexelCodes& codes, const std::vector<bool
 }
 
 PROPERTY(PartitionedMaps, AreTheDistancesToCellsWithTheirValues) {
-    const SkipScene scene = randomScene(16);
+    const SkipScene scene = randomScene(10);
     const SkipOptions options = randomOptions();
     const ValueBins bins = randomBins(scene, options.partitions);
     const PartitionedMaps maps = built(scene, bins, options);

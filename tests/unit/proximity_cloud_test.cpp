@@ -75,7 +75,7 @@ void checkLengths(const SkipScene& scene, int edge, double loss) {
 }
 
 PROPERTY(ProximityCloud, LengthsAreExactForDyadicSpacing) {
-    SkipScene scene = randomScene(24);
+    SkipScene scene = randomScene(16);
     const auto ratio = [] { return anyElement(1.0, 1.25, 2.0, 3.0625, 40.0); };
     scene.geometry.spacingMm = 0.5 * glm::dvec3(ratio(), ratio(), ratio());
     scene.geometry.spacingMm[anyInt(0, 3)] = 0.5;
@@ -83,7 +83,7 @@ PROPERTY(ProximityCloud, LengthsAreExactForDyadicSpacing) {
 }
 
 PROPERTY(ProximityCloud, LengthsAreLowerBoundsForAnySpacing) {
-    SkipScene scene = randomScene(24);
+    SkipScene scene = randomScene(16);
     const auto spacing = [] { return anyInt(1, 500); };
     scene.geometry.spacingMm = glm::dvec3(spacing(), spacing(), spacing()) / 97.0;
     checkLengths(scene, randomEdge(), 1.0 / 256.0);
