@@ -34,6 +34,7 @@ Result<void> infoCommand(const InputOptions& options) {
     if (!volume) {
         return tl::unexpected(volume.error());
     }
+    sayNotes(options, *volume);
     const VolumeGeometry& g = volume->geometry;
     const VolumeStatistics s = statisticsOf(*volume);
     const glm::dvec3 box = glm::dvec3(g.dims) * g.spacingMm;

@@ -101,6 +101,7 @@ Result<Stage> openStage(const Session& session, const InputOptions& input, const
     if (!volume) {
         return tl::unexpected(volume.error());
     }
+    sayNotes(input, *volume);
     if (volume->nonFiniteVoxels > 0) {
         say(volume->name + ": " + std::to_string(volume->nonFiniteVoxels) +
             " voxels are NaN or infinite: treated as the lowest value");

@@ -79,9 +79,6 @@ Result<Session> openSession() {
 
 Result<Volume> openVolume(const InputOptions& options) {
     Result<Volume> volume = isPhantom(options) ? phantomOf(options) : fileOf(options);
-    for (std::size_t i = 0; volume && i < volume->notes.size(); ++i) {
-        say(fmt::format("{}: {}", options.volume, volume->notes[i]));
-    }
     const Progress progress(options.downsample > 1 || options.cubeEdge > 0 ? "averaging voxels"
                                                                            : "");
     if (volume && options.downsample > 1) {
@@ -91,6 +88,12 @@ Result<Volume> openVolume(const InputOptions& options) {
         volume = resample(*volume, glm::ivec3(options.cubeEdge));
     }
     return volume;
+}
+
+void sayNotes(const InputOptions& options, const Volume& volume) {
+    for (const std::string& note : volume.notes) {
+        say(fmt::format("{}: {}", options.volume, note));
+    }
 }
 
 VolumeStatistics statisticsOf(const Volume& volume) {

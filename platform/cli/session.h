@@ -33,6 +33,8 @@ struct InputOptions {
 
 /// Shows at the terminal how far it is.
 Result<Volume> openVolume(const InputOptions& options);
+/// What its reader assumed or left out, on stderr.
+void sayNotes(const InputOptions& options, const Volume& volume);
 /// computeStatistics(), with a line at the terminal.
 VolumeStatistics statisticsOf(const Volume& volume);
 
