@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <new>
 
 namespace slabcast {
 
@@ -12,8 +11,9 @@ VoxelBytes::VoxelBytes(std::size_t size) : size_(size) {
     }
     // From the system's zeros: large memory takes no room before it is written to.
     auto* bytes = static_cast<std::byte*>(std::calloc(size, 1));
-    if (bytes == nullptr) {
-        throw std::bad_alloc();
+    if (bytes == nullptr) { // fails as `new` does, with exceptions and without
+        bytes_ = {new std::byte[size](), [](std::byte* own) { delete[] own; }};
+        return;
     }
     bytes_ = {bytes, [](std::byte* own) { std::free(own); }};
 }
