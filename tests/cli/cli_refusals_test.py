@@ -8,6 +8,7 @@ import json
 import os
 import re
 import sys
+import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
@@ -206,9 +207,10 @@ class BadDevices(CliTest):
 
     def test_budget_is_asked_before_a_file_is_read(self):
         """As of phantoms. Of 8 GiB, which the test could not read in time: all of it is a hole of the disk."""
-        with open(self.folder / "huge.raw", "wb") as file:
-            file.truncate(2048 ** 3)
-        huge = ("huge.raw", "--raw", "2048x2048x2048,uint8,1x1x1", "--gpu-budget", "1000")
+        elsewhere = tempfile.NamedTemporaryFile()  # the files of the folder are compared
+        self.addCleanup(elsewhere.close)
+        elsewhere.truncate(2048 ** 3)
+        huge = (elsewhere.name, "--raw", "2048x2048x2048,uint8,1x1x1", "--gpu-budget", "1000")
         self.render_fails(*huge, cause="8589934592 bytes.*1048576000", remedy="--downsample 3$")
         self.render_fails(*huge, "--downsample", "2", cause="8589934592 bytes", remedy="--downsample 3$")
         self.fails("error", *huge, "--out", "report", cause="8589934592 bytes", remedy="--downsample 3$")

@@ -103,6 +103,16 @@ TEST_F(ApartTest, AReaderThatGetsNoFurtherIsStopped) {
                   "no further in 0.2 s");
 }
 
+TEST_F(ApartTest, MoreThanMayBeTakenIsToldAsThat) {
+    const auto path = write("a.raw", "");
+    std::filesystem::resize_file(path, 128 << 20);
+    LoadOptions options;
+    options.raw = parseRawLayout("512x512x512,uint8,1x1x1").value();
+    options.limits.memoryBytes = 64 << 20;
+    expectFailure(apart::readApart(path, options), ErrorCode::FileUnreadable, "a.raw",
+                  "not enough memory");
+}
+
 TEST_F(ApartTest, CanBeCancelled) {
     readWith("sleep 600");
     const std::atomic<bool> cancel = true;
@@ -163,6 +173,9 @@ TEST_F(ApartTest, RequestsArriveAsTheyWereSent) {
     EXPECT_EQ(request->options.spacingMm, options.spacingMm);
     EXPECT_EQ(request->options.unit, "HU");
     EXPECT_EQ(request->options.limits.memoryBytes, 1 << 30);
+    std::string ofAnotherBuild = packet;
+    ofAnotherBuild[1] ^= 1;
+    EXPECT_FALSE(apart::decodeRequest(ofAnotherBuild));
 }
 
 TEST_F(ApartTest, PacketsThatEndEarlyOrLateAreNone) {

@@ -99,12 +99,13 @@ std::uint8_t number(Enum value) {
 }
 
 constexpr std::uint32_t kMostSelections = 64;
+constexpr std::uint32_t kVersion = 2; // of what is said: ends of two builds part at once
 
 } // namespace
 
 std::string encodeRequest(const std::string& path, const LoadOptions& o) {
     Writer write(Packet::Request);
-    write(path)(o.series)(static_cast<std::uint32_t>(o.select.size()));
+    write(kVersion)(path)(o.series)(static_cast<std::uint32_t>(o.select.size()));
     for (const Selection& selection : o.select) {
         write(selection.key)(selection.value);
     }
@@ -119,7 +120,8 @@ std::optional<Request> decodeRequest(std::string_view packet) {
     Request request;
     LoadOptions& o = request.options;
     Reader read(packet);
-    read(request.path)(o.series);
+    std::uint32_t version = 0;
+    read(version)(request.path)(o.series);
     o.select.resize(read.count(kMostSelections));
     for (Selection& selection : o.select) {
         read(selection.key)(selection.value);
@@ -135,7 +137,7 @@ std::optional<Request> decodeRequest(std::string_view packet) {
     o.time = time >= 0 ? std::optional(time) : std::nullopt;
     o.raw = hasRaw ? std::optional(raw) : std::nullopt;
     o.spacingMm = hasSpacing ? std::optional(spacing) : std::nullopt;
-    return read.finished(std::move(request));
+    return version == kVersion ? read.finished(std::move(request)) : std::nullopt;
 }
 
 std::string encodeProgress(const LoadProgress& progress) {

@@ -1,6 +1,7 @@
 // slabcast-read: reads one volume for another process, which read_apart.cpp starts it from.
 
 #include <array>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -30,8 +31,12 @@ std::vector<Shared>& allShared() {
 
 VoxelBytes allocateShared(std::size_t size) {
     const int file = memfd_create("slabcast voxels", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-    if (file < 0 || size == 0 || ftruncate(file, static_cast<off_t>(size)) != 0) {
+    if (file < 0 || size == 0) {
         return VoxelBytes(size);
+    }
+    if (ftruncate(file, static_cast<off_t>(size)) != 0) {
+        close(file);
+        throw std::bad_alloc();
     }
     void* mapping = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
     if (mapping == MAP_FAILED) {
@@ -72,6 +77,7 @@ int run() {
     }
     setenv("DCMDICTPATH", "/dev/null", 0); // until a file needs DCMTK's dictionary: dicom_dataset.h
     confine(request->options.limits);
+    std::signal(SIGXFSZ, SIG_IGN); // an error where room is made for too many voxels
     LoadOptions& options = request->options;
     options.process = ReadIn::ThisProcess;
     options.allocate = allocateShared;
