@@ -11,15 +11,6 @@
 
 namespace slabcast::stability {
 
-namespace {
-
-/// NaN stays.
-double largerOf(double largest, double next) {
-    return next <= largest ? largest : next;
-}
-
-} // namespace
-
 std::span<const Method> methods() {
     static constexpr Method kMethods[] = {
         {"slicing, rgba8", 1, TargetFormat::Rgba8},
@@ -86,6 +77,14 @@ Result<Drawn> Bench::draw(const Scene& scene, const FramePlan& plan, const View&
     return Drawn{plan, {size, target_.read()}};
 }
 
+Result<Picture> Bench::drawFinely(const Scene& scene, const FramePlan& plan, const View& view,
+                                  glm::ivec2 size) {
+    if (!caps().floatBlend) {
+        return fail(ErrorCode::DeviceUnsupported, "this device does not blend float32 targets");
+    }
+    return drawInFloat32(renderer_, scene, plan, view, size);
+}
+
 Result<WorkCounters> Bench::countWork(const Scene& scene, const FramePlan& plan, const View& view,
                                       glm::ivec2 size) {
     const ViewTarget where{view, 0, {0, 0, size.x, size.y}};
@@ -133,6 +132,27 @@ void Bench::recordFailure(Case unmeasured, const Error& error) {
     unmeasured.measured = std::nan("");
     unmeasured.failure = error.detail;
     record(std::move(unmeasured));
+}
+
+Result<Picture> drawInFloat32(Renderer& renderer, const Scene& scene, const FramePlan& plan,
+                              const View& view, glm::ivec2 size) {
+    gl::ColorTargets target;
+    if (Result<void> made = target.resize(size.x, size.y, {GL_RGBA32F}); !made) {
+        return tl::unexpected(made.error());
+    }
+    target.begin();
+    const ViewTarget where{view, target.framebuffer(), {0, 0, size.x, size.y}};
+    if (Result<void> ready = renderer.prepare(scene, plan, {&where, 1}); !ready) {
+        return tl::unexpected(ready.error());
+    }
+    if (Result<void> done = renderer.draw(scene, plan, {&where, 1}); !done) {
+        return tl::unexpected(done.error());
+    }
+    return Picture{size, target.read()};
+}
+
+double largerOf(double largest, double next) {
+    return next <= largest ? largest : next;
 }
 
 double largestDifference(const Picture& picture, std::span<const glm::dvec4> reference) {
@@ -194,7 +214,12 @@ std::span<const Family> families() {
         {"extreme-plans", "Extreme plans", extremePlanCases},
         {"in-time", "Swimming in time", inTimeCases},
         {"half-precision", "Half precision", halfPrecisionCases},
-        {"left-out", "What a scene does not need", leftOutCases}};
+        {"left-out", "What a scene does not need", leftOutCases},
+        {"symmetry", "Axes, mirrors and units", symmetryCases},
+        {"cut-rays", "A ray cut into pieces", cutRayCases},
+        {"conditioning", "One ulp of an input", conditioningCases},
+        {"optical-depth", "Optical depth from 1e-8 to 1e8", opticalDepthCases},
+        {"manufactured", "Manufactured solutions", manufacturedCases}};
     return kFamilies;
 }
 

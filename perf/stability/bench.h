@@ -56,6 +56,10 @@ public:
                        glm::ivec2 size);
     Result<Drawn> draw(const Scene& scene, const FramePlan& plan, const View& view,
                        glm::ivec2 size);
+    /// Into float32, so that no target's rounding hides what was computed. Fails: also
+    /// DeviceUnsupported (float32 targets are not blended).
+    Result<Picture> drawFinely(const Scene& scene, const FramePlan& plan, const View& view,
+                               glm::ivec2 size);
     Result<WorkCounters> countWork(const Scene& scene, const FramePlan& plan, const View& view,
                                    glm::ivec2 size);
 
@@ -87,8 +91,14 @@ private:
     std::function<void(const Case&)> watcher_;
 };
 
+/// Into a float32 target of its own. Contract: the device blends them.
+Result<Picture> drawInFloat32(Renderer& renderer, const Scene& scene, const FramePlan& plan,
+                              const View& view, glm::ivec2 size);
+
 // Quantities that cases measure.
 
+/// The greater of two; NaN stays.
+double largerOf(double largest, double next);
 /// Largest difference of any component. NaN where there is one.
 double largestDifference(const Picture& picture, std::span<const glm::dvec4> reference);
 
@@ -110,6 +120,11 @@ void extremePlanCases(Bench& bench);
 void inTimeCases(Bench& bench);
 void halfPrecisionCases(Bench& bench);
 void leftOutCases(Bench& bench);
+void symmetryCases(Bench& bench);
+void cutRayCases(Bench& bench);
+void conditioningCases(Bench& bench);
+void opticalDepthCases(Bench& bench);
+void manufacturedCases(Bench& bench);
 
 struct Family {
     const char* name;
