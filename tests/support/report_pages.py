@@ -1,10 +1,30 @@
 """What the tests of the reports' pages share."""
 
 import json
+import re
 import subprocess
 import tempfile
 import unittest
 from pathlib import Path
+
+
+def check_figures(test, folder, text):
+    """Every figure of a page lies beside it as SVG and PDF, at both widths: text as text, and no other files."""
+    names = re.findall(r"<code>figures/([\w-]+)\.svg</code>", text)
+    test.assertEqual(len(names), 2 * len(re.findall(r"<figure><div class=.wide.>", text)))
+    test.assertEqual({path.name for path in (folder / "figures").iterdir()},
+                     {f"{name}.{kind}" for name in names for kind in ("svg", "pdf")})
+    for name in names:
+        svg = (folder / "figures" / f"{name}.svg").read_text(encoding="utf-8")
+        test.assertRegex(svg, r"\A<\?xml [^\n]*\n<svg ", name)
+        test.assertIn("<text ", svg, name)
+        test.assertNotRegex(svg, r'<path id="[^"]*(DejaVu|Sans)', name)  # glyphs as outlines
+        shown = re.sub(r' width="[\d.]+pt"| height="[\d.]+pt"', "", svg.partition("\n")[2], count=2)
+        test.assertIn(shown, text, name)
+        pdf = (folder / "figures" / f"{name}.pdf").read_bytes()
+        test.assertTrue(pdf.startswith(b"%PDF-") and pdf.rstrip().endswith(b"%%EOF"), name)
+        test.assertIn(b"/CIDFontType2", pdf, name)  # TrueType, as a type 42 font is embedded
+        test.assertNotIn(b"/Type3", pdf, name)
 
 
 class ReportTest(unittest.TestCase):
