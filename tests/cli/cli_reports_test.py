@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+"""Folders of reports: what a run finds there it goes on with, or leaves as it is; and what docs/reports.md says of all.
+
+usage: cli_reports_test.py SLABCAST [arguments of unittest]
+"""
+
+import json
+import shutil
+import statistics
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
+from cli_case import PHANTOM, CliTest, main  # noqa: E402
+from report_keys import odd_keys, undocumented_columns, undocumented_keys  # noqa: E402
+
+PAGE = r"[^\n]*report\.html\n"
+REMEDY = "give --out another folder, or --fresh to start anew in this one"
+SWEEP = ("sweep", PHANTOM, "--size", "32x32", "--layers", "1,8,0", "--frames", "6", "--out", "d")
+# Each as small as can be, into the folder d.
+RUNS = {
+    "sweep": SWEEP,
+    "error": ("error", PHANTOM, "--size", "16x16", "--layer-spacing", "2,1", "--layers-per-plane", "0", "--classify",
+              "post", "--target", "rgba8", "--termination", "off", "--jitter", "off", "--frames", "3", "--out", "d"),
+    "stability": ("stability", "--reduced", "--family", "in-time", "--out", "d"),
+    "edit": ("edit", PHANTOM, "--size", "32x32", "--layers-per-plane", "8", "--frames", "20", "--octree-frames", "1",
+             "--verify", "--out", "d"),
+}
+
+
+class ReportCase(CliTest):
+    def report(self, name="sweep"):
+        return json.loads((self.folder / "d" / f"{name}.json").read_text())
+
+    def rows_file(self):
+        return self.folder / "d" / "rows.jsonl"
+
+    def env(self):
+        return {"XDG_CACHE_HOME": str(self.folder / "cache")}
+
+    def refused(self, arguments, *causes):
+        before = self.kept()
+        run = self.run_cli(*arguments, env=self.env())
+        self.assertEqual(run.returncode, 1, run.stderr)
+        self.assertRegex(run.stderr, rf"\Aslabcast: d: holds [^\n]*: {REMEDY}\n\Z")
+        for cause in causes:
+            self.assertIn(cause, run.stderr)
+        self.assertEqual(self.kept(), before)
+
+
+class Documented(ReportCase):
+    def test_every_column_and_every_key(self):
+        for name, arguments in RUNS.items():
+            with self.subTest(name):
+                self.succeeds(*arguments, env=self.env(), notes=PAGE)
+                self.assertEqual(undocumented_columns(self.folder / "d" / f"{name}.csv", name), [])
+                self.assertEqual(undocumented_keys(self.report(name), name), [])
+                self.assertEqual(odd_keys(self.report(name)), [])
+                shutil.rmtree(self.folder / "d")
+
+    def test_a_column_or_a_key_that_is_not_there_would_be_found(self):
+        (self.folder / "t.csv").write_text("planes,frame_ms_median,frobs\n")
+        self.assertEqual(undocumented_columns(self.folder / "t.csv", "sweep"), ["frobs"])
+        self.assertEqual(undocumented_keys({"rows": [{"planes": 1, "speedup_over_plain_low": 1, "frobs": {}}]}, "sweep"),
+                         ["frobs"])
+
+
+class Race(ReportCase):
+    def test_rows_race_and_their_ratios_are_paired(self):
+        self.succeeds(*SWEEP, notes=PAGE)
+        rows = self.report()["rows"]
+        slicing = {(row["skip"], row["tighten"]): row for row in rows if row["layers_per_plane"] == 1}
+        plain = {row["layers_per_plane"]: row for row in rows if row["skip"] == "none" and not row["tighten"]}
+        for row in rows:
+            self.assertEqual(len(row["samples"]), 6)
+            self.assertAlmostEqual(row["frame_ms"]["median"], statistics.median(row["samples"]), places=9)
+            self.assertIsNone(row["frame_ms"]["p90"])  # of six frames the greatest
+            for over, other in (("slicing", slicing[row["skip"], row["tighten"]]),
+                                ("plain", plain[row["layers_per_plane"]]), ("plain_slicing", plain[1])):
+                ratios = sorted(a / b for a, b in zip(other["samples"], row["samples"], strict=True))
+                found = [row[f"speedup_over_{over}{end}"] for end in ("_low", "", "_high")]
+                for value, wanted in zip(found, (ratios[0], statistics.median(ratios), ratios[-1])):
+                    self.assertAlmostEqual(value, wanted, places=9)
+            self.assertAlmostEqual(row["speedup_coverage"], 1 - 2 / 2**6, places=9)
+            self.assertGreater(row["first_frame_ms"], 0)
+
+    def test_percentiles_need_nine_rounds(self):
+        self.succeeds(*SWEEP[:4], "--layers", "8", "--frames", "9", "--out", "d", notes=PAGE)
+        for row in self.report()["rows"]:
+            self.assertGreaterEqual(row["frame_ms"]["p90"], row["frame_ms"]["median"])
+
+
+class GoesOn(ReportCase):
+    def setUp(self):
+        super().setUp()
+        self.succeeds(*SWEEP, notes=PAGE)
+        self.before = self.report()
+        if self.before["commit"].endswith("-dirty"):
+            self.skipTest("only a build of committed sources goes on")
+
+    def test_after_the_last_whole_round(self):
+        lines = self.rows_file().read_text().splitlines(keepends=True)
+        kept = [line for line in lines if '"race/round 4"' not in line and '"race/round 5"' not in line]
+        self.assertEqual(len(kept), len(lines) - 2)
+        self.rows_file().write_text("".join(kept))
+        (self.folder / "d" / "sweep.json").unlink()
+        self.succeeds(*SWEEP, notes=rf"slabcast: d: {len(kept) - 1} rows [^\n]* are kept\n{PAGE}")
+        for was, row in zip(self.before["rows"], self.report()["rows"], strict=True):
+            self.assertEqual(row["samples"][:4], was["samples"][:4])
+            self.assertEqual(len(row["samples"]), 6)
+            self.assertNotEqual(row["samples"][4:], was["samples"][4:])
+            for key in ("counters", "compile_ms", "first_frame_ms", "variant"):
+                self.assertEqual(row[key], was[key])
+
+    def test_a_finished_run_is_only_written_again(self):
+        self.succeeds(*SWEEP, notes=rf"slabcast: d: \d+ rows [^\n]* are kept\n{PAGE}")
+        self.assertEqual(self.report()["rows"], self.before["rows"])
+
+    def test_damaged_rows_start_anew(self):
+        self.rows_file().write_text(self.rows_file().read_text() + '{"id": 7}\n')
+        self.succeeds(*SWEEP, notes=rf"slabcast: d: rows\.jsonl is damaged: starts anew\n{PAGE}")
+        self.assertNotEqual(self.report()["rows"][0]["samples"], self.before["rows"][0]["samples"])
+
+
+class HoldsAnother(ReportCase):
+    def test_run_of_the_same_command(self):
+        self.succeeds(*SWEEP, notes=PAGE)
+        commit = self.report()["commit"]
+        self.refused((*SWEEP, "--camera", "40,10,3", "--lattice", "shells"), "a 'sweep' run of shells (slabcast sweep ",
+                     "which differs in camera, lattice")
+        self.refused(("sweep", "phantom:vessels:24", *SWEEP[2:]), "differs in ", "voxels")
+        (self.folder / "d" / "sweep.json").unlink()
+        self.refused((*SWEEP, "--camera", "40,10,3"), "holds the beginning of a 'sweep' run of shells")
+        self.succeeds(*SWEEP, "--camera", "40,10,3", "--fresh", notes=PAGE)
+        self.assertEqual(self.report()["conditions"]["camera"], [40, 10, 3])
+        self.assertEqual(self.report()["commit"], commit)
+
+    def test_run_of_another_command(self):
+        """Of each command's folder each other keeps away; with --fresh it leaves nothing of the other's."""
+        self.succeeds(*RUNS["edit"], notes=PAGE)
+        for name, arguments in RUNS.items():
+            self.refused(arguments, "holds an 'edit' run of shells (slabcast edit ",
+                         "which cannot go on" if name in ("edit", "stability") else "which is another report")
+        self.succeeds(*RUNS["error"], "--fresh", env=self.env(), notes=PAGE)
+        self.assertFalse((self.folder / "d" / "edit.json").exists())
+        self.assertFalse((self.folder / "d" / "edit.csv").exists())
+        self.refused(RUNS["edit"], "holds an 'error' run of shells")
+        self.refused(RUNS["stability"], "holds an 'error' run of shells")
+        self.succeeds(*RUNS["edit"], "--fresh", notes=PAGE)
+        self.assertFalse(self.rows_file().exists())
+
+
+if __name__ == "__main__":
+    main(__doc__)
