@@ -49,6 +49,7 @@ def svg(figure, name, key=()):
     # Text is text: where the font is not there, one of nearly its widths.
     text = text.replace("'DejaVu Sans'", "'DejaVu Sans', Verdana, sans-serif")
     FILES[f"{name}.svg"] = f'<?xml version="1.0" encoding="utf-8" standalone="no"?>\n{text}'.encode()
+    figure.set_layout_engine("none")  # laid out already
     pages = io.BytesIO()
     figure.savefig(pages, format="pdf", transparent=True, metadata={"CreationDate": None})
     FILES[f"{name}.pdf"] = pages.getvalue()

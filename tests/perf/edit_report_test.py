@@ -13,7 +13,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
-from report_pages import ReportTest, check_figures  # noqa: E402
+from report_pages import ReportTest, check_figures, words_of  # noqa: E402
 
 REPORT = Path(__file__).resolve().parent.parent.parent / "perf" / "pages" / "edit_report.py"
 FRAMES = 120
@@ -58,6 +58,10 @@ class EditReportTest(ReportTest):
 
     def page(self, data):
         (self.folder / self.data).write_text(json.dumps(data))
+        return words_of(self.folder, "edit_data", "edit_page")
+
+    def whole_page(self, data):
+        (self.folder / self.data).write_text(json.dumps(data))
         result = subprocess.run([REPORT, self.folder], capture_output=True, text=True, check=False)
         self.assertEqual(result.returncode, 0, result.stderr)
         text = (self.folder / "report.html").read_text(encoding="utf-8")
@@ -65,7 +69,7 @@ class EditReportTest(ReportTest):
         return text
 
     def test_says_what_was_found(self):
-        page = self.page(measured())
+        page = self.whole_page(measured())
         worst = max(row["frame_ms"] / row["octree_ms"] for row in measured()["rows"])
         for said in (f"{worst:.2f}×", "6.60×", "23.7 %", "1.33×", "1 frame<", "120 of 120 pictures", "1.41×", "&lt;skull&gt;", "13 × 32",
                      "skipping: bitfield-octree", "skipping: proximity", "1.5 times the frame by"):

@@ -16,7 +16,7 @@ from types import SimpleNamespace
 from report_test import external
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
-from report_pages import ReportTest, check_figures  # noqa: E402
+from report_pages import ReportTest, check_figures, words_of  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "perf" / "pages"))
 import skipbench_plots  # noqa: E402
@@ -159,12 +159,16 @@ class SkipbenchReportTest(ReportTest):
     def setUp(self):
         super().setUp()
         if not self.full:
-            type(self).full = self.page(compared())
+            type(self).full = self.whole_page(compared())
             check_figures(self, self.folder, self.full)
             shutil.rmtree(self.folder)
             self.folder.mkdir()
 
     def page(self, data):
+        write(self.folder, data)
+        return words_of(self.folder, "skipbench_data", "skipbench_page")
+
+    def whole_page(self, data):
         write(self.folder, data)
         result = subprocess.run([REPORT, self.folder], capture_output=True, text=True, check=False)
         self.assertEqual((result.returncode, result.stderr), (0, ""))

@@ -2,10 +2,32 @@
 
 import json
 import re
+import sys
 import subprocess
 import tempfile
 import unittest
+from importlib import import_module
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "perf" / "pages"))
+
+
+def words_of(folder, data_module, page_module):
+    """A page without its figures, each `<svg/>`, in this process: drawing them is what takes time."""
+    plots = import_module(page_module).plots
+    drawn, plots.svg = plots.svg, lambda figure, name, key=(): _drawn(figure, name, key)
+    try:
+        return import_module(page_module).page(import_module(data_module).load(folder))
+    finally:
+        plots.svg = drawn
+
+
+def _drawn(figure, name, key):
+    svg = import_module("page_svg")
+    svg.plt.close(figure)
+    drawn = svg.Drawn("<svg/>" + "".join(f"<text>{entry[0]}</text>" for entry in key))
+    drawn.name = name
+    return drawn
 
 
 def check_figures(test, folder, text):
