@@ -150,9 +150,9 @@ std::vector<MeasuredError> measuredOf(const Stage& stage, const std::vector<Samp
 Result<ErrorStore> openStore(const Stage& stage, const ErrorDesc& desc, const RunInfo& run,
                              ReportFolder& folder) {
     const Json key = referenceKey(stage, run);
-    return ErrorStore::open(
-        folder, {"error", stage.info().name, run.command, rowsKey(stage, desc, key)}, key,
-        stage.watcher());
+    return ErrorStore::open(folder,
+                            {"error", stage.info().name, run.command, rowsKey(stage, desc, key)},
+                            key, stage.watcher());
 }
 
 } // namespace
@@ -193,7 +193,8 @@ Result<std::vector<MeasuredError>> measureErrors(Stage& stage, const ErrorDesc& 
         return tl::unexpected(added.error());
     }
     return folder
-        .write("error.csv", csvOf(*rows, columnsOf({kColumns, kMomentColumns, kMeasuredColumns, kLastColumns})))
+        .write("error.csv",
+               csvOf(*rows, columnsOf({kColumns, kMomentColumns, kMeasuredColumns, kLastColumns})))
         .and_then([&] { return folder.write("error.json", report.dump(2) + "\n"); })
         .map([&] { return measuredOf(stage, grid, *rows, run); });
 }

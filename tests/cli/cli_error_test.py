@@ -86,6 +86,75 @@ class Accuracy(CliTest):
             self.assertLessEqual(total, sum(parts) * (1 + 1e-12))
             self.assertGreaterEqual(total, (2 * max(parts) - sum(parts)) * (1 - 1e-12))
 
+    def test_bias_and_deviation_make_up_the_error(self):
+        for row in self.rows():
+            for part in self.PARTS:
+                error = row["error"][part]
+                self.assertAlmostEqual(error["rmse"] ** 2, error["bias"] ** 2 + error["deviation"] ** 2, places=14)
+                self.assertAlmostEqual(error["alpha_rmse"] ** 2,
+                                       error["alpha_bias"] ** 2 + error["alpha_deviation"] ** 2, places=14)
+                colours = [error[f"{name}_bias"] for name in ("red", "green", "blue")]
+                self.assertAlmostEqual(error["bias"], sum(colours) / 3, places=14)
+                self.assertTrue(error["max"] > 1 / 255 or error["visible_share"] == 0)
+            self.assertTrue(0 <= row["flip"]["mean"] <= row["flip"]["max"] <= 1)
+        coarse, fine = self.rows(layers=0, target="rgba16f")[::3]
+        self.assertGreater(coarse["flip"]["mean"], fine["flip"]["mean"])
+        self.assertGreater(coarse["error"]["total"]["visible_share"], fine["error"]["total"]["visible_share"])
+
+    def test_refinement_finds_every_order_and_every_mistake(self):
+        studies = self.report["refinement"]["studies"]
+        self.assertEqual(self.report["refinement"]["device_refused"], None)
+        for study in studies:
+            told = (study["kind"], study["method"], study["order"], study["why"])
+            self.assertTrue(study["as_expected"], told)
+            self.assertEqual(study["looks_right"], not study["control"], told)
+        kinds = {(study["kind"], study["control"]) for study in studies}
+        self.assertEqual(kinds, {(kind, control) for kind in ("step", "grid", "pixel") for control in (True, False)})
+        device = [study["kind"] for study in studies if "device" in study["method"]]
+        self.assertEqual(device, ["step", "grid"])
+        with open(self.measured / "err" / "refinement.csv", newline="", encoding="utf-8") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual([(line["method"], float(line["rmse"])) for line in table],
+                         [(study["method"], level["rmse"]) for study in studies for level in study["levels"]])
+
+    def test_this_volumes_own_convergence_is_judged(self):
+        (family,) = self.report["convergence"]
+        self.assertEqual((family["classification"], family["expected_order"]), ("post", 2))
+        self.assertEqual([level["rmse"] for level in family["levels"]],
+                         [row["error"]["sampling"]["rmse"] for row in self.rows(target="rgba16f", layers=0)])
+        self.assertEqual(family["as_expected"],
+                         family["asymptotic"] and abs(family["order"] - 2) <= 0.2)
+
+    def test_the_worst_ray_is_taken_apart(self):
+        ray = json.loads((self.measured / "err" / "worst_ray.json").read_text())
+        self.assertEqual({**self.report["worst_ray"], "layers": ray["layers"]}, ray)
+        (row,) = (row for row in self.rows() if row["id"] == ray["row"])
+        self.assertEqual((row["spacing"], ray["pixel"]), (1, row["worst_pixel"]["pixel"]))
+        self.assertEqual(row["worst_pixel"]["error"], row["error"]["total"]["max"])
+        for sampled, exact, reference in zip(ray["layers"][-1]["gathered"], ray["exact"], ray["reference"]):
+            self.assertAlmostEqual(exact, reference, places=8)  # another path to the same integral
+            self.assertLess(abs(sampled - exact), 2 * ray["error"] + 0.01)
+        lengths = sum(layer["length_mm"] for layer in ray["layers"])
+        self.assertAlmostEqual(lengths, ray["exit_mm"] - ray["entry_mm"], places=6)
+        with open(self.measured / "err" / "worst_ray.csv", newline="", encoding="utf-8") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual([(int(line["layer"]), float(line["value"]), float(line["exact_alpha"])) for line in table],
+                         [(layer["layer"], layer["value"], layer["exact"][3]) for layer in ray["layers"]])
+
+    def test_a_step_is_predicted_beside_the_measured_one(self):
+        found = self.report["predicted_step"]
+        good = [row["spacing"] for row in self.rows(target="rgba16f", layers=0)
+                if row["error"]["sampling"]["rmse"] <= found["threshold_rmse"]]
+        self.assertEqual(found["measured_voxels"], max(good, default=None))
+        self.assertAlmostEqual(found["predicted_mm"],
+                               0.5 / (found["transfer_cycles_per_unit"] * found["gradient_per_mm"]))
+        self.assertTrue(found["why"])
+
+    def test_refinement_can_be_left_out(self):
+        self.succeeds(*self.one_row("phantom:marschner-lobb:16"), env=self.own_cache(), notes=self.PAGE)
+        self.assertIsNone(self.new_report()["refinement"])
+        self.assertFalse((self.folder / "err" / "refinement.csv").exists())
+
     def test_error_falls_with_the_spacing_squared(self):
         rays = self.rows(target="rgba16f", layers=0)  # what is blended once is rounded once
         totals = [row["error"]["total"]["rmse"] for row in rays]
@@ -173,7 +242,7 @@ class Accuracy(CliTest):
         """The arguments of a run that measures a single row, but for the axes that are given."""
         axes = {"size": "16x16", "layer-spacing": 2, "layers-per-plane": 0, "classify": "post", "target": "rgba8",
                 "termination": "off", "jitter": "off", **{name.replace("_", "-"): axes[name] for name in axes}}
-        return ("error", volume, "--out", "err", "--frames", "3", *more,
+        return ("error", volume, "--out", "err", "--frames", "3", "--refinement", "off", *more,
                 *(word for name, value in axes.items() for word in (f"--{name}", value)))
 
     def new_report(self):
