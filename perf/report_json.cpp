@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <ctime>
 
-#include "perf/settings_json.h"
 #include "perf/stage.h"
 
 namespace slabcast {
@@ -108,13 +107,6 @@ void addRatio(Json& row, const std::string& name, const PairedRatio& ratio,
     row[name + "_low"] = ratio.interval.low;
     row[name + "_high"] = ratio.interval.high;
     row[coverage] = ratio.interval.coverage;
-}
-
-Json conditionsOf(const StageDesc& stage) {
-    return {{"size", Json::list({stage.size.x, stage.size.y})},
-            {"camera", toJson(stage.camera)},
-            {"fov_degrees", stage.fovDegrees},
-            {"settings", toJson(stage.settings)}};
 }
 
 Json toJson(const Result<WorkCounters>& counters) {

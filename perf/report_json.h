@@ -14,7 +14,6 @@
 namespace slabcast {
 
 class Stage;
-struct StageDesc;
 
 /// The key of what words name, snake_case as all keys are: of "early exit" or "early-exit"
 /// early_exit. Tested by: settings_json_test.cpp
@@ -33,9 +32,6 @@ Json toJson(const Result<WorkCounters>& counters); // null where they cannot be 
 /// rounds share.
 void addRatio(Json& row, const std::string& name, const PairedRatio& ratio,
               const std::string& coverage);
-
-/// What is asked of every picture of a stage: its size, camera, and all settings by their names.
-Json conditionsOf(const StageDesc& stage);
 
 /// What a report says of the run itself, and only the program knows.
 struct RunInfo {

@@ -7,6 +7,7 @@
 #include "perf/edit/summary.h"
 #include "perf/json.h"
 #include "perf/report_json.h"
+#include "perf/settings_json.h"
 #include "perf/stage.h"
 
 namespace slabcast {

@@ -5,6 +5,7 @@
 
 #include "perf/report_json.h"
 #include "perf/run_store.h"
+#include "perf/settings_json.h"
 #include "perf/skip/builds.h"
 #include "perf/skip/figures.h"
 #include "perf/skip/frames.h"

@@ -3,6 +3,7 @@
 #include "perf/csv.h"
 #include "perf/json.h"
 #include "perf/report_json.h"
+#include "perf/settings_json.h"
 #include "perf/skip/figures.h"
 #include "perf/skip/papers.h"
 #include "perf/skip/row_json.h"

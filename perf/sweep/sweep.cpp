@@ -8,6 +8,7 @@
 #include "perf/number.h"
 #include "perf/race.h"
 #include "perf/run_store.h"
+#include "perf/settings_json.h"
 #include "perf/sweep/sweep_table.h"
 
 namespace slabcast {
