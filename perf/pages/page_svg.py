@@ -1,6 +1,5 @@
 """How the pages' plots look, and how they become SVG text and files."""
 
-import html
 import io
 import re
 import textwrap
@@ -37,7 +36,8 @@ class Drawn(str):
 
 def svg(figure, name, key=()):
     """Inline SVG that scales with the page; ids are made unique, for a page holds several. The same goes to FILES,
-    as SVG and PDF. `key`: entries of a legend, as key() takes them, drawn above the plots: the figure grows by it."""
+    as SVG and PDF. `key`: entries of a legend, drawn above the plots, by which the figure grows: (text, colour, marker
+    or None, hollow, dashes in points as "4 2", "" for a solid line, None for no line)."""
     if key:
         _add_legend(figure, key)
     buffer = io.StringIO()
@@ -61,10 +61,10 @@ def svg(figure, name, key=()):
 
 def _handle(entry, room):
     text, colour, marker, hollow, dashes = entry
-    style = "none" if dashes is None else (0, tuple(map(float, dashes.split()))) if dashes not in ("", "none") else "-"
+    style = "none" if dashes is None else (0, tuple(map(float, dashes.split()))) if dashes else "-"
     return Line2D([], [], color=colour, lw=1.6, ls=style, marker=marker or "", ms=5.5, mew=1.3, mec=colour,
                   mfc=PAPER_WHITE if hollow else colour,
-                  label=textwrap.fill(html.unescape(text).replace("$", r"\$"), room))
+                  label=textwrap.fill(text.replace("$", r"\$"), room))
 
 
 def _add_legend(figure, entries):
@@ -92,18 +92,3 @@ def plain_log_ticks(axis):
     axis.set_major_locator(LogLocator(10, subs=(1, 2, 5)))
     axis.set_major_formatter(FuncFormatter(plain_number))
     axis.set_minor_formatter(NullFormatter())
-
-
-def key(entries):
-    """A legend that wraps with the page: (text, colour, marker or None, hollow, dash array or None for no line)."""
-    shapes = {"o": '<circle cx="13" cy="6" r="3.6"{0}/>', "s": '<rect x="9.6" y="2.6" width="6.8" height="6.8"{0}/>',
-              "^": '<path d="M13 2 17 9.6H9z"{0}/>', "v": '<path d="M13 10 17 2.4H9z"{0}/>',
-              "D": '<path d="M13 1.6 17.4 6 13 10.4 8.6 6z"{0}/>'}
-    items = []
-    for text, colour, marker, hollow, dashes in entries:
-        line = f'<path d="M1 6H25" stroke="{colour}" stroke-width="1.6" stroke-dasharray="{dashes}"/>'
-        paint = f' fill="{PAPER_WHITE if hollow else colour}" stroke="{colour}" stroke-width="1.3"'
-        drawn = (line if dashes is not None else "") + (shapes[marker].format(paint) if marker else "")
-        box = "0 0 26 12" if dashes is not None else "6 0 14 12"
-        items.append(f'<li><svg viewBox="{box}" aria-hidden="true">{drawn}</svg>{text}</li>')
-    return f'<ul class="key">{"".join(items)}</ul>'

@@ -11,8 +11,8 @@ from page_svg import NARROW, WIDE, plt  # noqa: E402
 
 ENTRIES = [(text, "#123456", marker, hollow, dashes) for text, marker, hollow, dashes in (
     ("no skipping, full polygons", "o", False, ""), ("skipping (bitfield-octree), tight polygons", "s", True, "4 2"),
-    ("a &lt;name&gt; with $signs$ and a very long story of where it is from and what it was told to be called", None,
-     False, "none"), ("front: nothing is both cheaper and more accurate", "D", False, None))]
+    ("a <name> with $signs$ and a very long story of where it is from and what it was told to be called", None,
+     False, ""), ("front: nothing is both cheaper and more accurate", "D", False, None))]
 
 
 class LegendTest(unittest.TestCase):
