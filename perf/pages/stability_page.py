@@ -178,15 +178,15 @@ def conditions(family):
         lines.append([f"{esc(found.get('scene', ''))}<small>{esc(found.get('input', ''))}</small>",
                       scientific(found.get("perturbation"), 2), scientific(found.get("largest_change"), 2),
                       figures(found.get("condition_number")),
-                      figures(limit) if limit is not None else "<b>unbounded</b>: a step is met",
+                      figures(limit) if limit is not None else "<b>unbounded</b>: a step",
                       f"{100 * jumping:.3g} %" if jumping else "none"])
     head = ["scene, input", "relative change of the input", "largest change of the picture", "condition number",
             "at most, by derivatives", "pixels that jump"]
     return lines and table(head, lines, css="paper") + (
         '<p class="note">The condition number is the largest change of any component of any pixel over the relative '
         "change of the input (of an eye, over its distance from the volume’s centre). A pixel jumps where it changes by "
-        "more than derivatives allow: past a step of the transfer function. Shares are of the pixels that the volume "
-        "covers.</p>") or ""
+        "more than derivatives allow: past a step of the transfer function, where change over change has no bound, though "
+        "no sample may lie within reach. Shares are of the pixels that the volume covers.</p>") or ""
 
 
 def family_section(stability, family):

@@ -12,7 +12,8 @@ PASSED, FAILED = "#1d5a91", "#c0392b"
 LEAST, MOST = 1e-6, 1e2  # shares of the bound that are told apart; what is beyond lies at the rim
 HUES = ("#22262b", "#1d5a91", "#b5485a", "#d9a02b", "#2f8f8b")
 SHAPES = "os^vD"
-RANGE = 1e6  # of the ordinate, at most, but that bounds are shown
+RANGE = 1e6  # of the ordinate, at most, where no bounds are drawn
+BELOW = 20  # times below the least bound an ordinate begins
 PLAIN = 1e3  # of the abscissa: beyond, its ticks are decades
 MOST_CURVES = 6  # in a panel, before it is divided
 
@@ -95,9 +96,11 @@ def _bounds(panels):
 
 
 def floor_of(panels):
-    """What is below is drawn there: a millionth of the largest, or a hundredth of the least bound."""
-    largest = max(y for groups in panels.values() for points in groups.values() for _, y, _ in points) or 1.0
-    return min([largest / RANGE, *(bound / 100 for bound in _bounds(panels))])
+    """What is below is drawn there: beneath all bounds, or at a millionth of the largest."""
+    bounds = _bounds(panels)
+    if bounds:
+        return min(bounds) / BELOW
+    return (max(y for groups in panels.values() for points in groups.values() for _, y, _ in points) or 1.0) / RANGE
 
 
 def _curve(axes, points, style, floor):

@@ -43,7 +43,7 @@ struct Condition {
     std::string input;
     double perturbation = 0.0;   // relative, of the input
     double largestChange = 0.0;  // of any component of any pixel, of full scale
-    std::optional<double> limit; // of change / perturbation, by derivatives; none: a step is met
+    std::optional<double> limit; // of change / perturbation, by derivatives; none: past a step
     double jumpingShare = 0.0;   // of the pixels that the volume covers: past what derivatives say
 };
 

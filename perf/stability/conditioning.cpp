@@ -80,7 +80,6 @@ struct Changes {
     double largest = 0.0;
     double smooth = 0.0; // the largest of pixels without a sample that may pass a step
     double bound = 0.0;  // of those
-    bool steps = false;  // a sample may pass one somewhere
     int covered = 0;
     int jumps = 0; // pixels that change by more than derivatives say
     int unexplained = 0;
@@ -95,7 +94,6 @@ Changes changesOf(const std::vector<glm::dvec4>& before, const std::vector<glm::
         const double change = std::max({off.x, off.y, off.z, off.w});
         const bool jumps = !(change <= allowed.bound + rounding); // as NaN does
         found.largest = largerOf(found.largest, change);
-        found.steps |= allowed.meetsStep;
         found.covered += allowed.covered;
         found.jumps += jumps;
         found.unexplained += jumps && !allowed.meetsStep;
@@ -105,6 +103,13 @@ Changes changesOf(const std::vector<glm::dvec4>& before, const std::vector<glm::
         }
     }
     return found;
+}
+
+bool hasStep(const TransferFunction& tf) {
+    return std::adjacent_find(tf.points.begin(), tf.points.end(),
+                              [](const TransferPoint& a, const TransferPoint& b) {
+                                  return a.value == b.value;
+                              }) != tf.points.end();
 }
 
 /// Layers' sums in float64, and their places, before and after.
@@ -133,6 +138,7 @@ void recordInput(Bench& bench, const char* subject, const Input& input, const Sa
     const std::string times = share == kUlp ? "1 ulp" : number(share / kUlp, 6) + " ulps";
     const std::string name = named({subject, input.name, times});
     const double limit = found.bound / share;
+    const bool bounded = !(input.passesSteps && hasStep(before.tf));
     bench.record(
         {.family = kFamily,
          .name = name,
@@ -146,14 +152,15 @@ void recordInput(Bench& bench, const char* subject, const Input& input, const Sa
                           .x = share,
                           .y = found.largest / share,
                           .xLabel = "relative change of the input",
-                          .yLabel = "largest change of the picture over it"},
+                          .yLabel = "largest change of the picture over it",
+                          .bound = bounded ? std::optional(limit) : std::nullopt},
          .condition = Condition{.scene = subject,
                                 .input = named({input.name, times}),
                                 .perturbation = share,
                                 .largestChange = found.largest,
-                                .limit = found.steps ? std::nullopt : std::optional(limit),
+                                .limit = bounded ? std::optional(limit) : std::nullopt,
                                 .jumpingShare = double(found.jumps) / std::max(1, found.covered)}});
-    if (found.steps) {
+    if (!bounded) {
         bench.record({.family = kFamily,
                       .name = named({name, "unexplained"}),
                       .quantity = "pixels beyond their bound, of which no sample may pass a step",

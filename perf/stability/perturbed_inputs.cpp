@@ -84,28 +84,29 @@ std::span<const Input> perturbedInputs() {
          [](SampleSetup& s, double share) {
              moveEye(s, {share, 0.0, 0.0});
          },
-         nullptr},
+         nullptr, true},
         {"eye, forwards",
          [](SampleSetup& s, double share) {
              moveEye(s, {0.0, 0.0, -share});
          },
-         nullptr},
+         nullptr, true},
         {"voxel spacing",
-         [](SampleSetup& s, double share) { s.geometry.spacingMm.x *= 1.0 + share; }, nullptr},
+         [](SampleSetup& s, double share) { s.geometry.spacingMm.x *= 1.0 + share; }, nullptr,
+         true},
         {"layer spacing", [](SampleSetup& s, double share) { s.lattice.spacingMm *= 1.0 + share; },
-         nullptr},
+         nullptr, true},
         {"unit of opacity", [](SampleSetup& s, double share) { s.tf.opacityUnitMm *= 1.0 + share; },
-         byUnit},
+         byUnit, false},
         {"opacity of a point",
          [](SampleSetup& s, double share) {
              s.tf.points[pointsOf(s.tf).last].opacity *= 1.0 + share;
          },
-         byPointOpacity},
+         byPointOpacity, false},
         {"colour of a point",
          [](SampleSetup& s, double share) {
              s.tf.points[pointsOf(s.tf).last].color *= 1.0 + share;
          },
-         byPointColor},
+         byPointColor, false},
         {"value of a point",
          [](SampleSetup& s, double share) {
              const Step at = pointsOf(s.tf);
@@ -113,7 +114,7 @@ std::span<const Input> perturbedInputs() {
                  s.tf.points[i].value *= 1.0 + share;
              }
          },
-         byPointValue}};
+         byPointValue, true}};
     return kInputs;
 }
 
