@@ -19,7 +19,7 @@ namespace slabcast::skipbench {
 namespace {
 
 /// The CT skull that assets/prepare_skull.py makes, and the TF that its goals were set with.
-constexpr const char* kSkullVoxels = "SKULL";
+constexpr const char* kSkullVoxels = "7cddd6bf41a5f58c";
 constexpr const char* kSkullTransfer = "CT bone";
 
 VolumeRecord recordOf(const Stage& stage, const Input& input, const std::string& label,

@@ -128,6 +128,9 @@ TEST(SkipFigures, OwnScenesArePhantomsUnderTheirOwnPresetsAndTheSkullUnderBone) 
     EXPECT_EQ(ownSceneOf({.volume = "skull.nrrd", .voxels = "0", .usualTransfer = true}, "CT bone"),
               OwnScene::None)
         << "a file's name makes no skull";
+    const Input skull{.volume = "any.nrrd", .voxels = "7cddd6bf41a5f58c"};
+    EXPECT_EQ(ownSceneOf(skull, "CT bone"), OwnScene::Skull);
+    EXPECT_EQ(ownSceneOf(skull, "CT lung"), OwnScene::None);
 }
 
 TEST(SkipFigures, WhatIsPairedHasAnInterval) {
