@@ -1,5 +1,6 @@
 #include "perf/stability/manufactured_solution.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
