@@ -5,14 +5,14 @@
 
 #include "core/reference/continuous.h"
 #include "core/reference/discrete.h"
-#include "perf/stability/exhibit.h"
+#include "perf/stability/bench.h"
 
 namespace slabcast::stability {
 
 namespace {
 
-constexpr const char* kFamily = "manufactured";
-constexpr int kKnots = 1024;        // samples in the middles of up to 512 layers lie on knots
+using manufactured::kFamily;
+using manufactured::kKnots;
 constexpr glm::ivec2 kPixels(3, 3); // of float64's pictures
 
 using Pixels = std::vector<glm::dvec4>;
@@ -28,22 +28,6 @@ double largestOf(const Pixels& a, const Pixels& b) {
         worst = largerOf(worst, largestOf(a[i] - b[i]));
     }
     return worst;
-}
-
-/// The solution's picture, and its greatest lean.
-Pixels solutionOf(const View& view, glm::ivec2 size) {
-    Pixels pixels;
-    for (int y = 0; y < size.y; ++y) {
-        for (int x = 0; x < size.x; ++x) {
-            pixels.push_back(
-                manufactured::solution(manufactured::leanOf(view, size, glm::dvec2(x, y) + 0.5)));
-        }
-    }
-    return pixels;
-}
-
-double mostLean(const View& view, glm::ivec2 size) {
-    return manufactured::leanOf(view, size, glm::dvec2(0.5));
 }
 
 /// Errors of a method by its number of steps, each with its bound where there is one.
@@ -195,7 +179,7 @@ Pixels samplesOf(const Scene& scene, const DiscreteTransfer& transfer, const Vie
 }
 
 void integralCases(Bench& bench, const Scene& scene, const View& view) {
-    const double lean = mostLean(view, kPixels);
+    const double lean = manufactured::mostLean(view, kPixels);
     Convergence found{
         "integral", "knots of the transfer function", 2.0,
         "straight lines between knots for opacity and colour: h^2/8 of their second derivatives; "
@@ -203,7 +187,7 @@ void integralCases(Bench& bench, const Scene& scene, const View& view) {
     for (int knots = 16; knots <= kKnots; knots *= 2) {
         const double error =
             largestOf(integralOf(scene, manufactured::transferFunction(knots), view),
-                      solutionOf(view, kPixels));
+                      manufactured::solutionOf(view, kPixels));
         found.rows.push_back(
             {knots, error, manufactured::boundOfKnots(knots, lean) + 1e-13 * knots});
     }
@@ -232,11 +216,11 @@ void recordSumsAlpha(Bench& bench, const Pixels& pixels, const View& view, int l
 }
 
 void sampleCases(Bench& bench, const Scene& scene, const View& view) {
-    const double lean = mostLean(view, kPixels);
+    const double lean = manufactured::mostLean(view, kPixels);
     Convergence found{"samples", "layers", 2.0, kRules[0].reason};
     for (int layers = 8; layers <= kKnots / 2; layers *= 2) {
         const Pixels pixels = samplesOf(scene, scene.look().tf, view, layers);
-        found.rows.push_back({layers, largestOf(pixels, solutionOf(view, kPixels)),
+        found.rows.push_back({layers, largestOf(pixels, manufactured::solutionOf(view, kPixels)),
                               manufactured::boundOfLayers(layers, lean)});
         recordSumsAlpha(bench, pixels, view, layers);
     }
@@ -244,7 +228,7 @@ void sampleCases(Bench& bench, const Scene& scene, const View& view) {
 }
 
 void preintegratedCases(Bench& bench, const Scene& scene, const View& view) {
-    const double lean = mostLean(view, kPixels);
+    const double lean = manufactured::mostLean(view, kPixels);
     const Pixels integral = integralOf(scene, scene.look().tf, view);
     Convergence found{
         "pre-integrated samples, against the integral", "layers", 2.0,
@@ -273,81 +257,6 @@ void preintegratedCases(Bench& bench, const Scene& scene, const View& view) {
     record(bench, found);
 }
 
-/// What a picture by this plan may be from the solution, but for blending. `table`: what rounds its
-/// texels.
-ExpectedPicture expectedOf(const Exhibit& exhibit, const FramePlan& plan, double table) {
-    const double layers = manufactured::kThicknessMm / plan.lattice.spacingMm;
-    const bool endOnFaces =
-        plan.lattice.total % 2 == 0 && std::abs(std::remainder(layers, 2.0)) < 1e-9;
-    const double lean = mostLean(exhibit.view, exhibit.size);
-    const auto texels = static_cast<int>(exhibit.scene.table().texels.size()) - 1;
-    const double more = manufactured::boundOfLayers(int(std::lround(layers)), lean) +
-                        (endOnFaces ? 0.0 : manufactured::boundOfKinks(layers, lean)) +
-                        manufactured::boundOfKnots(kKnots, lean) +
-                        manufactured::boundOfKnots(texels, lean) + table;
-    ExpectedPicture expected = expectedFromSamples(exhibit, plan);
-    const Pixels solution = solutionOf(exhibit.view, exhibit.size);
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-        expected[i] = {solution[i], expected[i].bound + more, expected[i].atEdge};
-    }
-    return expected;
-}
-
-const std::string kDrawnReason =
-    "the chosen solution; a pixel's own bound adds to what float32 and the target may do to its "
-    "samples what layers err by (h^2 times second derivatives, and the kinks at both faces where "
-    "layers do not end there), the knots of the transfer function, the texels of its table, and "
-    "their rounding, ";
-
-Exhibit exhibitOf(const Bench& bench, const Scene& scene, double layerSpacingVoxels) {
-    const glm::ivec2 size(bench.reduced() ? 8 : 20);
-    return {.family = kFamily,
-            .name = "drawn",
-            .scene = scene,
-            .view = manufactured::view(scene, size),
-            .size = size,
-            .layerSpacingVoxels = layerSpacingVoxels};
-}
-
-void drawnCases(Bench& bench, const Scene& scene) {
-    const Exhibit exhibit = exhibitOf(bench, scene, 0.5);
-    const Result<FramePlan> plan = bench.plan(scene, settingsFor(exhibit, methods().back()));
-    if (!plan) {
-        return bench.recordFailure({.family = kFamily, .name = "drawn"}, plan.error());
-    }
-    recordAgainst(bench, exhibit, kDrawnReason + "2^-11 of extinction and of colour",
-                  expectedOf(exhibit, *plan, 0x1p-10));
-}
-
-/// So finely that little is left of the bound: 9 layers a voxel, which end on both faces, into
-/// float32, from a table in float32, which a point beneath the data that is 12 decades fainter asks
-/// for.
-void drawnFinelyCase(Bench& bench) {
-    Case c{.family = kFamily,
-           .name = "drawn, 9 layers a voxel, float32",
-           .quantity = "worst share of a pixel's own bound",
-           .bound = 1.0,
-           .reason = kDrawnReason + "2^-24 of extinction and of colour"};
-    TransferFunction tf = manufactured::transferFunction(kKnots);
-    tf.points.insert(tf.points.begin(), {-1.0, manufactured::color(0.0), 1e-13});
-    const Result<Scene> scene =
-        bench.scene(manufactured::volume(), {.tf = tf}, {.structure = SkipStructure::None}, true);
-    if (!scene) {
-        return bench.recordFailure(std::move(c), scene.error());
-    }
-    const Exhibit exhibit = exhibitOf(bench, *scene, 1.0 / 9.0);
-    const Result<FramePlan> plan = bench.plan(*scene, settingsFor(exhibit, methods().back()));
-    const Result<Picture> drawn = plan ? bench.drawFinely(*scene, *plan, exhibit.view, exhibit.size)
-                                       : tl::unexpected(plan.error());
-    if (!drawn) {
-        return bench.recordFailure(std::move(c), drawn.error());
-    }
-    const ExpectedPicture expected = expectedOf(exhibit, *plan, 0x1p-23);
-    c.measured =
-        judge(exhibit, *drawn, expected, std::vector<double>(expected.size(), 0x1p-24)).share;
-    bench.record(std::move(c));
-}
-
 } // namespace
 
 void manufacturedCases(Bench& bench) {
@@ -360,8 +269,7 @@ void manufacturedCases(Bench& bench) {
     integralCases(bench, *scene, view);
     sampleCases(bench, *scene, view);
     preintegratedCases(bench, *scene, view);
-    drawnCases(bench, *scene);
-    drawnFinelyCase(bench);
+    drawnManufacturedCases(bench, *scene);
 }
 
 } // namespace slabcast::stability

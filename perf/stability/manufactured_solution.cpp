@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "perf/stability/bench.h"
 #include "perf/stability/volumes.h"
 
 namespace slabcast::stability::manufactured {
@@ -137,6 +136,20 @@ double leanOf(const View& view, glm::ivec2 size, glm::dvec2 fragCoord) {
     const Frustum& f = view.frustum;
     return glm::length(
         glm::dvec3(glm::mix(f.left, f.right, share.x), glm::mix(f.bottom, f.top, share.y), 1.0));
+}
+
+double mostLean(const View& view, glm::ivec2 size) {
+    return leanOf(view, size, glm::dvec2(0.5));
+}
+
+std::vector<glm::dvec4> solutionOf(const View& view, glm::ivec2 size) {
+    std::vector<glm::dvec4> pixels;
+    for (int y = 0; y < size.y; ++y) {
+        for (int x = 0; x < size.x; ++x) {
+            pixels.push_back(solution(leanOf(view, size, glm::dvec2(x, y) + 0.5)));
+        }
+    }
+    return pixels;
 }
 
 } // namespace slabcast::stability::manufactured

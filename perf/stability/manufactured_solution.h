@@ -1,7 +1,10 @@
 #pragma once
 
+#include <vector>
+
 #include "core/scene/scene.h"
 #include "core/view/view.h"
+#include "perf/stability/bench.h"
 
 namespace slabcast::stability {
 
@@ -47,6 +50,16 @@ TransferFunction transferFunction(int knots);
 /// From below, along z; all rays pass both faces.
 View view(const Scene& scene, glm::ivec2 size);
 double leanOf(const View& view, glm::ivec2 size, glm::dvec2 fragCoord);
+double mostLean(const View& view, glm::ivec2 size);
+/// All of a picture, row by row from the bottom.
+std::vector<glm::dvec4> solutionOf(const View& view, glm::ivec2 size);
+
+inline constexpr const char* kFamily = "manufactured";
+inline constexpr int kKnots = 1024; // samples in the middles of up to 512 layers lie on knots
 
 } // namespace manufactured
+
+/// The family's part that the device draws. `scene`: of kKnots knots, exact texels.
+void drawnManufacturedCases(Bench& bench, const Scene& scene);
+
 } // namespace slabcast::stability

@@ -13,9 +13,19 @@ namespace slabcast::stability {
 
 namespace {
 
-constexpr CsvColumn kColumns[] = {
-    {"family", "/family"},     {"name", "/name"}, {"quantity", "/quantity"}, {"bound", "/bound"},
-    {"measured", "/measured"}, {"pass", "/pass"}, {"failure", "/failure"},   {"reason", "/reason"}};
+constexpr CsvColumn kColumns[] = {{"family", "/family"},
+                                  {"name", "/name"},
+                                  {"quantity", "/quantity"},
+                                  {"bound", "/bound"},
+                                  {"measured", "/measured"},
+                                  {"pass", "/pass"},
+                                  {"failure", "/failure"},
+                                  {"perturbation", "/condition/perturbation"},
+                                  {"largest_change", "/condition/largest_change"},
+                                  {"condition_number", "/condition/condition_number"},
+                                  {"limit", "/condition/limit"},
+                                  {"jumping_share", "/condition/jumping_share"},
+                                  {"reason", "/reason"}};
 
 /// JSON knows neither NaN nor infinity.
 Json finite(double value) {
