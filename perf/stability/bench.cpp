@@ -79,10 +79,17 @@ Result<Drawn> Bench::draw(const Scene& scene, const FramePlan& plan, const View&
 
 Result<Picture> Bench::drawFinely(const Scene& scene, const FramePlan& plan, const View& view,
                                   glm::ivec2 size) {
-    if (!caps().floatBlend) {
-        return fail(ErrorCode::DeviceUnsupported, "this device does not blend float32 targets");
+    SLABCAST_EXPECTS(plan.target == TargetFormat::Rgba16f, plan.target);
+    if (caps().floatBlend) {
+        return drawInFloat32(renderer_, scene, plan, view, size);
     }
-    return drawInFloat32(renderer_, scene, plan, view, size);
+    return draw(scene, plan, view, size).map([](Drawn&& drawn) {
+        return std::move(drawn.picture);
+    });
+}
+
+Bench::FinestTarget Bench::finest() const {
+    return caps().floatBlend ? FinestTarget{"float32", 0x1p-24} : FinestTarget{"rgba16f", 0x1p-11};
 }
 
 Result<WorkCounters> Bench::countWork(const Scene& scene, const FramePlan& plan, const View& view,

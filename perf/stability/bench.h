@@ -56,8 +56,13 @@ public:
                        glm::ivec2 size);
     Result<Drawn> draw(const Scene& scene, const FramePlan& plan, const View& view,
                        glm::ivec2 size);
-    /// Into float32, so that no target's rounding hides what was computed. Fails: also
-    /// DeviceUnsupported (float32 targets are not blended).
+    /// Into float32, so that no target's rounding hides what was computed; into fp16 where a device
+    /// does not blend that. Contract: a plan for fp16.
+    struct FinestTarget {
+        const char* name;
+        double rounding; // of values up to 1
+    };
+    FinestTarget finest() const;
     Result<Picture> drawFinely(const Scene& scene, const FramePlan& plan, const View& view,
                                glm::ivec2 size);
     Result<WorkCounters> countWork(const Scene& scene, const FramePlan& plan, const View& view,

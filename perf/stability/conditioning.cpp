@@ -205,7 +205,8 @@ void recordDrawn(Bench& bench, const Subject& subject, const Input& input,
                  const SampleSetup& before, const Result<DrawnSetup>& original) {
     const glm::ivec2 size = sizeOf(bench);
     Case c{.family = kFamily,
-           .name = named({subject.name, input.name, "1 ulp", "drawn in float32"}),
+           .name = named(
+               {subject.name, input.name, "1 ulp", std::string("drawn in ") + bench.finest().name}),
            .quantity = "largest change, of full scale",
            .reason = kDrawnReason};
     SampleSetup after = before;
@@ -216,11 +217,12 @@ void recordDrawn(Bench& bench, const Subject& subject, const Input& input,
     }
     const ChangeBound bound(before, after, size, kUlp, input.slopes);
     const double table = input.slopes == nullptr ? 0.0 : 2.0 * 0x1p-10;
+    const double target = 2.0 * bench.finest().rounding;
     for (std::size_t i = 0; i < original->expected.size(); ++i) {
         const glm::dvec2 at(double(i % std::size_t(size.x)), double(i / std::size_t(size.x)));
         if (!original->expected[i].atEdge && !changed->expected[i].atEdge) {
             c.bound = std::max(c.bound, bound.at(at + 0.5).bound + original->expected[i].bound +
-                                            changed->expected[i].bound + table);
+                                            changed->expected[i].bound + table + target);
         }
     }
     const std::vector<glm::dvec4> meant(original->picture.pixels.begin(),
@@ -229,11 +231,12 @@ void recordDrawn(Bench& bench, const Subject& subject, const Input& input,
     if (original->lattice.total != changed->lattice.total) {
         c.failure = "another number of layers";
     }
-    c.condition = Condition{.scene = named({subject.name, "drawn in float32"}),
-                            .input = named({input.name, "1 ulp"}),
-                            .perturbation = kUlp,
-                            .largestChange = c.measured,
-                            .limit = c.bound / kUlp};
+    c.condition =
+        Condition{.scene = named({subject.name, std::string("drawn in ") + bench.finest().name}),
+                  .input = named({input.name, "1 ulp"}),
+                  .perturbation = kUlp,
+                  .largestChange = c.measured,
+                  .limit = c.bound / kUlp};
     bench.record(std::move(c));
 }
 

@@ -183,12 +183,12 @@ void recordDrawn(Bench& bench, const Scene& scene, const Target& target, BlendOr
                  int pieces, const Result<Picture>& whole) {
     const glm::ivec2 size(bench.reduced() ? 16 : 32);
     // Twice 2^-22 per layer, as other families allow float32.
-    const double float32 = 2.0 * kLayers * 0x1p-22 / target.by.unit;
+    const double float32 = (2.0 * kLayers * 0x1p-22 + bench.finest().rounding) / target.by.unit;
     Case c = caseOf("drawn", target.by.name, order, pieces,
                     roundings(target.by, order, pieces) + float32, 0.0);
     c.reason = "planes are the pieces: as computed, in roundings of the target (fp16: 2^-11, for "
                "a device may take either neighbour; 8 bits: 1/510); and 2^-22 per layer in float32 "
-               "in either picture";
+               "in either picture, and the whole ray's own target (float32: 2^-24, fp16: 2^-11)";
     if (!whole) {
         return bench.recordFailure(std::move(c), whole.error());
     }

@@ -59,7 +59,7 @@ void drawnCases(Bench& bench, const Scene& scene) {
 /// for.
 void drawnFinelyCase(Bench& bench) {
     Case c{.family = manufactured::kFamily,
-           .name = "drawn, 9 layers a voxel, float32",
+           .name = named({"drawn, 9 layers a voxel", bench.finest().name}),
            .quantity = "worst share of a pixel's own bound",
            .bound = 1.0,
            .reason = kDrawnReason + "2^-24 of extinction and of colour"};
@@ -78,8 +78,9 @@ void drawnFinelyCase(Bench& bench) {
         return bench.recordFailure(std::move(c), drawn.error());
     }
     const ExpectedPicture expected = expectedOf(exhibit, *plan, 0x1p-23);
-    c.measured =
-        judge(exhibit, *drawn, expected, std::vector<double>(expected.size(), 0x1p-24)).share;
+    c.measured = judge(exhibit, *drawn, expected,
+                       std::vector<double>(expected.size(), bench.finest().rounding))
+                     .share;
     bench.record(std::move(c));
 }
 

@@ -25,7 +25,7 @@ const char* const kStoredReason =
     "the same field at the same places: two pictures differ by what each differs from float64 over "
     "the same samples, whose bound adds, layer by layer, positions off by 2^-22 of the terms that "
     "they are summed from, an interpolation in another order of axes (2^-21 of the data's range) "
-    "and the table's steps, and 2^-24 of the target";
+    "and the table's steps, and the target's rounding (float32: 2^-24, fp16: 2^-11)";
 const char* const kFilteredReason =
     "as for the stored axes, and the filter's weights of eight bits (3/256 of a cell's range and "
     "one step of the format); the target rounds at every plane that the ray meets";
@@ -96,7 +96,7 @@ void recordStored(Bench& bench, const std::vector<Stored>& stored) {
     std::optional<Picture> original;
     for (const Stored& one : stored) {
         Case c{.family = kSymmetryFamily,
-               .name = named({"stored along " + one.name, "float32"}),
+               .name = named({"stored along " + one.name, bench.finest().name}),
                .quantity = "worst share of both pictures' own bounds",
                .bound = 1.0,
                .reason = kStoredReason};
@@ -109,8 +109,8 @@ void recordStored(Bench& bench, const std::vector<Stored>& stored) {
         }
         original = original.value_or(*drawn);
         exact.measured = largerOf(exact.measured, worstOfFloat64(one.expected, stored[0].expected));
-        c.measured =
-            shareOfBothBounds(*drawn, one.expected, *original, stored[0].expected, 0x1p-23);
+        c.measured = shareOfBothBounds(*drawn, one.expected, *original, stored[0].expected,
+                                       2.0 * bench.finest().rounding);
         bench.record(std::move(c));
     }
     bench.record(std::move(exact));

@@ -94,7 +94,8 @@ void tenfoldCases(Bench& bench, const Table& table) {
             bench.recordFailure(std::move(c), original ? scaled.error() : original.error());
             continue;
         }
-        const double more = table.rounding * mostAlpha(original->picture) + 0x1p-23;
+        const double more =
+            table.rounding * mostAlpha(original->picture) + 2.0 * bench.finest().rounding;
         c.measured = shareOfBothBounds(scaled->picture, scaled->expected, original->picture,
                                        original->expected, more);
         const std::vector<glm::dvec4> meant(original->picture.pixels.begin(),
