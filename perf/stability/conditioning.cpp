@@ -74,6 +74,11 @@ SampleSetup setupOf(const Scene& scene, glm::ivec2 size) {
             .lattice = {LatticeKind::Planar, layersToCover(sphere.radiusMm, spacingMm), spacingMm}};
 }
 
+double largestOf(glm::dvec4 v) {
+    const glm::dvec4 size = glm::abs(v);
+    return std::max({size.x, size.y, size.z, size.w});
+}
+
 // --- In float64 ---
 
 struct Changes {
@@ -90,8 +95,7 @@ Changes changesOf(const std::vector<glm::dvec4>& before, const std::vector<glm::
     Changes found;
     for (int i = 0; i < size.x * size.y; ++i) {
         const PixelChange allowed = bound.at(glm::dvec2(i % size.x, i / size.x) + 0.5);
-        const glm::dvec4 off = glm::abs(after[std::size_t(i)] - before[std::size_t(i)]);
-        const double change = std::max({off.x, off.y, off.z, off.w});
+        const double change = largestOf(after[std::size_t(i)] - before[std::size_t(i)]);
         const bool jumps = !(change <= allowed.bound + rounding); // as NaN does
         found.largest = largerOf(found.largest, change);
         found.covered += allowed.covered;
@@ -240,6 +244,54 @@ void recordDrawn(Bench& bench, const Subject& subject, const Input& input,
     bench.record(std::move(c));
 }
 
+const char* const kDrawnStepReason =
+    "no derivative bounds what jumps; but a drawn picture has to jump where float64 over its "
+    "samples does, by the same table: either picture is within its own bound of that";
+
+/// Of a step: that the drawn pictures change as float64's do, and how many pixels jump.
+void recordDrawnStep(Bench& bench, const Subject& subject, const Input& input,
+                     const SampleSetup& before, const Result<DrawnSetup>& original) {
+    const glm::ivec2 size = sizeOf(bench);
+    const std::string drawnIn = std::string("drawn in ") + bench.finest().name;
+    Case c{.family = kFamily,
+           .name = named({subject.name, input.name, "1 ulp", drawnIn}),
+           .quantity = "worst share of both pictures' own bounds, change against float64's",
+           .bound = 1.0,
+           .reason = kDrawnStepReason};
+    SampleSetup after = before;
+    input.grow(after, kUlp);
+    const Result<DrawnSetup> changed = drawnOf(bench, subject, after);
+    if (!original || !changed) {
+        return bench.recordFailure(std::move(c), original ? changed.error() : original.error());
+    }
+    const ChangeBound bound(before, after, size, kUlp, input.slopes);
+    Condition found{.scene = named({subject.name, drawnIn}),
+                    .input = named({input.name, "1 ulp"}),
+                    .perturbation = kUlp};
+    int covered = 0;
+    int jumps = 0;
+    for (std::size_t i = 0; i < original->expected.size(); ++i) {
+        const PixelReference& a = original->expected[i];
+        const PixelReference& b = changed->expected[i];
+        if (a.atEdge || b.atEdge) {
+            continue;
+        }
+        const glm::dvec4 change =
+            glm::dvec4(changed->picture.pixels[i]) - glm::dvec4(original->picture.pixels[i]);
+        const double allowed = a.bound + b.bound + 2.0 * bench.finest().rounding;
+        c.measured = largerOf(c.measured, largestOf(change - (b.color - a.color)) / allowed);
+        const glm::dvec2 at(double(i % std::size_t(size.x)), double(i / std::size_t(size.x)));
+        const PixelChange smooth = bound.at(at + 0.5);
+        const double table = input.slopes == nullptr ? 0.0 : 2.0 * 0x1p-10;
+        covered += smooth.covered;
+        jumps += largestOf(change) > smooth.bound + allowed + table;
+        found.largestChange = largerOf(found.largestChange, largestOf(change));
+    }
+    found.jumpingShare = double(jumps) / std::max(1, covered);
+    c.condition = found;
+    bench.record(std::move(c));
+}
+
 } // namespace
 
 void conditioningCases(Bench& bench) {
@@ -257,12 +309,10 @@ void conditioningCases(Bench& bench) {
                 recordInput(bench, subject.name, input, setup, pixels, ulps * kUlp);
             }
         }
-        if (subject.value != lopsided) {
-            continue; // drawn pictures of steps jump where their rounding does
-        }
         const Result<DrawnSetup> original = drawnOf(bench, subject, setup);
         for (const Input& input : perturbedInputs()) {
-            recordDrawn(bench, subject, input, setup, original);
+            const bool jumps = input.passesSteps && hasStep(setup.tf);
+            (jumps ? recordDrawnStep : recordDrawn)(bench, subject, input, setup, original);
         }
     }
 }
