@@ -203,9 +203,13 @@ void bindStability(Command& command, StabilityOptions& o) {
     bindReportFolder(command, o.folder,
                      "stability.json, stability.csv, report.html, figures and pictures; made where "
                      "missing");
+    const Choices<std::string> families = familyWords();
     addChoice(command,
-              {.flag = "--family", .help = "only the cases of this family", .group = group},
-              o.family, familyWords());
+              {.flag = "--family",
+               .help = "only the cases of this family: " + wordsOf(families, ", "),
+               .group = group},
+              o.family, families)
+        .word = "FAMILY";
     addFlag(command,
             {.flag = "--reduced",
              .help = "fewer sizes, views and repetitions; the same bounds",
