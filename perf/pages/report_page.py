@@ -42,7 +42,7 @@ def run_facts(sweep):
         ("Volume", " · ".join(part for part in (esc(volume.get("type", "")), f"{spacing} mm" if spacing else "") if part)),
         ("Picture", f"{size}{f', {views} views' if number(views) and views > 1 else ''}" if size else None),
         ("Settings", settings),
-        ("Shading, termination", f"{esc(shade)}, {esc(termination)}" if shade or termination else None),
+        ("Shading, termination", f"{esc(shade or 'off')}, {esc(termination or 'off')}" if size else None),
         ("Layers", f"{layers} in total{f', {figures(step)} mm apart' if step else ''}" if layers else None),
         ("Tight polygons", on_off(conditions.get("tighten"))),
         ("Rounds", f"{conditions.get('rounds')}, in each a frame of every row, in an order shuffled anew"

@@ -62,7 +62,7 @@ def sweep():
         "volume": {"name": "skull.nrrd", "dims": [256, 256, 256], "type": "int16", "spacing_mm": [0.9, 0.9, 0.9],
                    "bytes": 33554432},
         "conditions": {"size": [1024, 1024], "layer_spacing_mm": 0.9, "total_layers": 444, "rounds": 36, "views": 1,
-                       "settings": {"classify": "post", "space": "display", "target": "rgba8", "shade": "off",
+                       "settings": {"classify": "post", "space": "display", "target": "rgba8", "shade": False,
                                     "termination": None, "lattice": "planar", "tighten": True}},
         "memory": {"host_peak_bytes": 201326592, "gpu_volume_bytes": 33554432, "gpu_skip_bytes": 262144},
         "skip": {"structure": "proximity", "parameters": {"skip_block": 4}, "build_ms": 41.5, "gpu_bytes": 262144,
@@ -116,6 +116,7 @@ class WholePageTest(unittest.TestCase):
                          "18.3 %", "192 MiB", "slabcast sweep skull.nrrd --layers 1,2,4 --out out"):
             self.assertIn(expected, text)
         self.assertIn("Test &lt;GPU&gt; &amp; Co", text)
+        self.assertIn("<dd>off, off</dd>", text)
         self.assertEqual(len(re.findall(r'<tr><th scope=row>\d+×\d+</th>', text)), 22)
 
     def test_ratios_have_their_intervals(self):
