@@ -18,8 +18,8 @@ using CommandOf = std::function<std::string(const Sampling& sampling, const Fram
 struct ErrorDesc {
     GridAxes axes; // completed()
     bool quick = false;
-    int frames = 5;          // of a row, at most
-    bool refinement = false; // of step, grid and pixel too
+    int frames = 5;            // of a row, at most
+    bool verification = false; // refinement and the worst ray, too
     CommandOf commandOf;
 };
 

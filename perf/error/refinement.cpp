@@ -137,14 +137,15 @@ RefinementStudy gridStudy(const GridRule& rule, const Picture& truth) {
                           .whyExpected = rule.why,
                           .control = rule.order != 2.0,
                           .floor = kFloor};
+    const FormulaInput input = refinedInput();
     const auto voxelMm = [](int edge) { return kCubeMm / edge; };
     refineAgainst(study, truth, {12, 24, 48, 96}, voxelMm, [&](int edge) {
-        const Volume volume = refinedVolume(edge, rule.place);
+        const Volume volume = refinedVolume(input.field, edge, rule.place);
         const Texels texels =
             encodeTexels(volume, computeStatistics(volume), TexelFormat::R32fExact);
         return renderContinuous({.texels = &texels,
                                  .geometry = volume.geometry,
-                                 .tf = refinedInput().tf,
+                                 .tf = input.tf,
                                  .view = refinedView(kRefinedFovDegrees),
                                  .viewport = viewportOf(kEdge)});
     });
@@ -295,7 +296,7 @@ std::vector<RefinementStudy> refine() {
     for (const RayRule& rule : rayRules()) {
         studies.push_back(stepStudy(rule, ofBlocks));
     }
-    const Picture truth = refinedTruth(kEdge);
+    const Picture truth = refinedTruth(refinedInput(), kEdge);
     for (const GridRule& rule : kGridRules) {
         studies.push_back(gridStudy(rule, truth));
     }

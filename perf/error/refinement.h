@@ -35,7 +35,9 @@ struct RefinementStudy {
 std::vector<RefinementStudy> refine();
 
 /// The same of what the device draws: step and grid, by ray casting into RGBA16F from float32
-/// texels. Fails: as Stage::open(), Stage::prepare() and Stage::drawOnNothing().
+/// texels. So that three refinements lie above that target's rounding, which is measured where
+/// nothing else errs, the field is one cosine wave along each axis: its asymptotic range begins at
+/// few voxels a wave. Fails: as Stage::open(), Stage::prepare() and Stage::drawOnNothing().
 Result<std::vector<RefinementStudy>> refineOnDevice(const Device& device);
 
 /// A report's `refinement`: `field`, tolerances and `studies`.

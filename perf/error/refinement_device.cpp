@@ -1,7 +1,6 @@
-#include <cmath>
+#include <numbers>
 #include <optional>
 
-#include "core/reference/continuous.h"
 #include "perf/error/error_table.h"
 #include "perf/error/reference_pictures.h"
 #include "perf/error/refinement.h"
@@ -13,24 +12,44 @@ namespace {
 
 using Picture = std::vector<glm::dvec4>;
 
-constexpr int kEdge = 16;
+constexpr int kEdge = 32;            // pixels
 constexpr int kStepGrid = 32;        // voxels an edge, while the step is refined
 constexpr double kFineStepMm = 0.25; // while the grid is
-/// One rounding of RGBA16F is 2^-12 of a value near 1, or twice that where a driver cuts off. An
-/// error of four times the greater is shifted by less than a tenth of an order's tolerance.
-constexpr double kTargetFloor = 4.0 * 0x1p-11;
+/// An error of so many times what rounding leaves is shifted by half an order's tolerance at most.
+constexpr double kAboveRounding = 2.5;
 
-Result<Stage> openStage(const Device& device, int edgeVoxels) {
+/// One wave along each axis, level at the cube's faces.
+double wavesAt(glm::dvec3 uvw) {
+    const glm::dvec3 waves = glm::cos(2.0 * std::numbers::pi * uvw);
+    return 0.5 + (waves.x + waves.y + waves.z) / 6.0;
+}
+
+FormulaInput smoothWaves() {
+    return {wavesAt, refinedInput().tf};
+}
+
+/// Layers show most where opacity peaks: a tenth of the values is visible.
+FormulaInput peakedWaves() {
+    FormulaInput input{wavesAt, refinedInput().tf};
+    input.tf.name = "one peak";
+    input.tf.opacityUnitMm = kCubeMm / 16.0;
+    input.tf.points = {{.value = 0.45, .color = {0.1, 0.3, 0.9}, .opacity = 0.0},
+                       {.value = 0.5, .color = {1.0, 0.6, 0.1}, .opacity = 0.6},
+                       {.value = 0.55, .color = {0.1, 0.3, 0.9}, .opacity = 0.0}};
+    return input;
+}
+
+Result<Stage> openStage(const Device& device, const FormulaInput& input, int edgeVoxels) {
     StageDesc desc;
     desc.size = glm::ivec2(kEdge);
     desc.camera = kRefinedCamera;
     desc.fovDegrees = kRefinedFovDegrees;
     desc.background.reset();
-    desc.tf = refinedInput().tf;
+    desc.tf = input.tf;
     desc.settings.skip = SkipStructure::None;
     desc.exactTexels = true;
     desc.keepValues = true;
-    Volume volume = refinedVolume(edgeVoxels);
+    Volume volume = refinedVolume(input.field, edgeVoxels);
     const VolumeStatistics statistics = computeStatistics(volume);
     return Stage::open(device, std::move(volume), statistics, std::move(desc));
 }
@@ -41,12 +60,16 @@ Result<Picture> draw(Stage& stage, double stepVoxels) {
                             .layersPerPlane = 0,
                             .classification = Classification::Post,
                             .target = TargetFormat::Rgba16f};
-    Settings settings = withSampling(stage.desc().settings, sampling, stage.scene().facts());
+    const Settings settings = withSampling(stage.desc().settings, sampling, stage.scene().facts());
     const Result<FramePlan> plan = stage.plan(settings);
     if (!plan) {
         return tl::unexpected(plan.error());
     }
     return stage.prepare(*plan).and_then([&] { return stage.drawOnNothing(*plan); });
+}
+
+double levelOf(const Picture& picture) {
+    return rmseOf(picture, Picture(picture.size(), glm::dvec4(0.0)));
 }
 
 void addLevel(RefinementStudy& study, double size, const Picture& picture, const Picture& truth,
@@ -57,20 +80,35 @@ void addLevel(RefinementStudy& study, double size, const Picture& picture, const
     study.convergence = convergenceOf(study.levels, study.floor);
 }
 
+/// What float32 and the target's rounding leave where neither step nor grid errs: the RMSE of a
+/// field of one value as a share of its picture's root mean square.
+Result<double> roundingOn(const Device& device) {
+    FormulaInput even = smoothWaves();
+    even.field = [](glm::dvec3 /*uvw*/) { return 0.5; };
+    Result<Stage> stage = openStage(device, even, 2);
+    if (!stage) {
+        return tl::unexpected(stage.error());
+    }
+    return draw(*stage, 0.1).map([&](const Picture& picture) {
+        const Picture truth = refinedTruth(even, kEdge);
+        return rmseOf(picture, truth) / levelOf(truth);
+    });
+}
+
 /// Against the exact picture of the same voxels: what is left is the step's.
-Result<RefinementStudy> stepStudy(const Device& device) {
-    RefinementStudy study{.kind = "step",
-                          .method = "the device's ray casting",
-                          .unit = "mm",
-                          .whyExpected = "as midpoint, on trilinear voxels",
-                          .floor = kTargetFloor};
-    Result<Stage> stage = openStage(device, kStepGrid);
+Result<RefinementStudy> stepStudy(const Device& device, double rounding) {
+    Result<Stage> stage = openStage(device, peakedWaves(), kStepGrid);
     if (!stage) {
         return tl::unexpected(stage.error());
     }
     const Picture truth = continuousPicture(*stage);
+    RefinementStudy study{.kind = "step",
+                          .method = "the device's ray casting",
+                          .unit = "mm",
+                          .whyExpected = "as midpoint, on trilinear voxels under a peak of opacity",
+                          .floor = kAboveRounding * rounding * levelOf(truth)};
     Picture before;
-    for (const double stepVoxels : {16.0, 8.0, 4.0, 2.0, 1.0, 0.5}) {
+    for (const double stepVoxels : {2.0, 1.0, 0.5, 0.25}) {
         Result<Picture> picture = draw(*stage, stepVoxels);
         if (!picture) {
             return tl::unexpected(picture.error());
@@ -82,16 +120,17 @@ Result<RefinementStudy> stepStudy(const Device& device) {
 }
 
 /// Against the picture of the formula, with steps so fine that the grid's error is what is left.
-Result<RefinementStudy> gridStudy(const Device& device) {
+Result<RefinementStudy> gridStudy(const Device& device, double rounding) {
+    const FormulaInput input = smoothWaves();
+    const Picture truth = refinedTruth(input, kEdge);
     RefinementStudy study{.kind = "grid",
                           .method = "the device's ray casting",
                           .unit = "mm",
                           .whyExpected = "as trilinear, with layers of a quarter of a millimetre",
-                          .floor = kTargetFloor};
-    const Picture truth = refinedTruth(kEdge);
+                          .floor = kAboveRounding * rounding * levelOf(truth)};
     Picture before;
-    for (const int edge : {2, 4, 8, 16, 32, 64}) {
-        Result<Stage> stage = openStage(device, edge);
+    for (const int edge : {3, 6, 12, 24}) {
+        Result<Stage> stage = openStage(device, input, edge);
         if (!stage) {
             return tl::unexpected(stage.error());
         }
@@ -108,9 +147,13 @@ Result<RefinementStudy> gridStudy(const Device& device) {
 } // namespace
 
 Result<std::vector<RefinementStudy>> refineOnDevice(const Device& device) {
+    const Result<double> rounding = roundingOn(device);
+    if (!rounding) {
+        return tl::unexpected(rounding.error());
+    }
     std::vector<RefinementStudy> studies;
     for (const auto study : {stepStudy, gridStudy}) {
-        Result<RefinementStudy> made = study(device);
+        Result<RefinementStudy> made = study(device, *rounding);
         if (!made) {
             return tl::unexpected(made.error());
         }

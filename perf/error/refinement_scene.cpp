@@ -44,7 +44,7 @@ double voxelCentre(int voxel, int edgeVoxels) {
     return (voxel + 0.5) / edgeVoxels;
 }
 
-Volume refinedVolume(int edgeVoxels, VoxelPlace place) {
+Volume refinedVolume(const FormulaField& field, int edgeVoxels, VoxelPlace place) {
     Volume volume;
     volume.name = "Marschner-Lobb, one wave";
     volume.type = VoxelType::F32;
@@ -56,7 +56,7 @@ Volume refinedVolume(int edgeVoxels, VoxelPlace place) {
             for (int y = 0; y < edgeVoxels; ++y) {
                 for (int x = 0; x < edgeVoxels; ++x) {
                     const auto at = [&](int voxel) { return place(voxel, edgeVoxels); };
-                    const auto value = static_cast<float>(signalAt({at(x), at(y), at(z)}));
+                    const auto value = static_cast<float>(field({at(x), at(y), at(z)}));
                     const auto index = static_cast<std::size_t>((z * edgeVoxels + y)) * edge + x;
                     std::memcpy(&volume.voxels[index * sizeof value], &value, sizeof value);
                 }
@@ -71,8 +71,7 @@ View refinedView(double fovDegrees) {
             symmetricFrustum(fovDegrees, 1.0), 0.0};
 }
 
-std::vector<glm::dvec4> refinedTruth(int edge) {
-    const FormulaInput input = refinedInput();
+std::vector<glm::dvec4> refinedTruth(const FormulaInput& input, int edge) {
     const VolumeGeometry cube = refinedCube(1);
     const RayFrame frame =
         makeRayFrame(refinedView(kRefinedFovDegrees), {0, 0, edge, edge}, cube,

@@ -49,13 +49,15 @@ Result<void> addVerification(Stage& stage, const ErrorDesc& desc, const std::vec
     report["convergence"] = familyConvergence(report.at("rows"), hasSteps(stage.scene().look().tf));
     report["predicted_step"] = prediction(stage, report.at("rows"));
     report["refinement"] = nullptr;
-    if (desc.refinement) {
-        Result<Json> refined = refinement(stage, folder);
-        if (!refined) {
-            return tl::unexpected(refined.error());
-        }
-        report["refinement"] = std::move(*refined);
+    report["worst_ray"] = nullptr;
+    if (!desc.verification) {
+        return {};
     }
+    Result<Json> refined = refinement(stage, folder);
+    if (!refined) {
+        return tl::unexpected(refined.error());
+    }
+    report["refinement"] = std::move(*refined);
     return traceWorstRay(stage, grid, report.at("rows"), folder).map([&](Json ray) {
         report["worst_ray"] = std::move(ray);
     });

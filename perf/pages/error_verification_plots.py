@@ -90,8 +90,10 @@ def key_of_refinement(errors):
         for study in studies(errors, kind):
             control = bool(study.get("control"))
             colour = CONTROL_HUE if control else HUES[0]
-            text = f"{kind}: {study.get('method')}{' (negative control)' if control else ''}"
-            entries.append((text, colour, shape_of(errors, study), control, "3 2" if control else ""))
+            entries.append((f"{kind}: {study.get('method')}", colour, shape_of(errors, study), control,
+                            "3 2" if control else ""))
+    if any(study.get("control") for study in studies(errors)):
+        entries.append(("dashed: negative control", CONTROL_HUE, None, True, "3 2"))
     guides = sorted({order for s in studies(errors) if not s.get("control")
                      and (order := number(s.get("expected_order")))}, reverse=True)
     return entries + [(f"slope of order {order:g}", MUTED, None, False,

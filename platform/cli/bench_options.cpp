@@ -77,12 +77,12 @@ void bindError(Command& command, ErrorOptions& o) {
              .group = "Output"},
             o.quick);
     addChoice(command,
-              {.flag = "--refinement",
+              {.flag = "--verification",
                .help = "refine step, grid and pixel too, in a field by formula, with deliberate "
-                       "mistakes beside: does the error have the orders that theory gives it? Some "
-                       "seconds",
+                       "mistakes beside: does the error have the orders that theory gives it? And "
+                       "take the worst ray apart, layer by layer. Some seconds",
                .group = "Output"},
-              o.refinement, {{"on", true}, {"off", false}})
+              o.verification, {{"on", true}, {"off", false}})
         .usually = "on, with --quick off";
     bindFrames(command, o.frames);
     bindInput(command, o.input);

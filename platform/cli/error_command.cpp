@@ -46,7 +46,7 @@ Result<void> errorCommand(const ErrorOptions& given, const std::string& command)
     const ErrorDesc desc{.axes = completed(options.axes, options.quick),
                          .quick = options.quick,
                          .frames = options.frames,
-                         .refinement = options.refinement.value_or(!options.quick),
+                         .verification = options.verification.value_or(!options.quick),
                          .commandOf = commandOf};
     const Result<std::vector<MeasuredError>> measured =
         measureErrors(stage, desc, runOf(command), folder);

@@ -58,8 +58,8 @@ struct ErrorOptions : SceneOptions {
     FolderOptions folder;
     bool quick = false;
     GridAxes axes;
-    int frames = 5;                 // of a row, at most
-    std::optional<bool> refinement; // none: unless quick
+    int frames = 5;                   // of a row, at most
+    std::optional<bool> verification; // none: unless quick
 };
 
 struct SkipbenchOptions : SceneOptions {

@@ -19,7 +19,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
 import cli_files as files  # noqa: E402
 from cli_case import POINT, CliTest, main  # noqa: E402
-from report_keys import odd_keys  # noqa: E402
+from report_keys import odd_keys, undocumented_columns, undocumented_keys  # noqa: E402
 
 
 class Accuracy(CliTest):
@@ -116,6 +116,12 @@ class Accuracy(CliTest):
         self.assertEqual([(line["method"], float(line["rmse"])) for line in table],
                          [(study["method"], level["rmse"]) for study in studies for level in study["levels"]])
 
+    def test_columns_and_keys_of_its_own_files_are_documented(self):
+        for name in ("refinement.csv", "worst_ray.csv"):
+            self.assertEqual(undocumented_columns(self.measured / "err" / name, "error"), [])
+        self.assertEqual(undocumented_keys(json.loads((self.measured / "err" / "worst_ray.json").read_text()), "error"),
+                         [])
+
     def test_this_volumes_own_convergence_is_judged(self):
         (family,) = self.report["convergence"]
         self.assertEqual((family["classification"], family["expected_order"]), ("post", 2))
@@ -149,10 +155,13 @@ class Accuracy(CliTest):
                                0.5 / (found["transfer_cycles_per_unit"] * found["gradient_per_mm"]))
         self.assertTrue(found["why"])
 
-    def test_refinement_can_be_left_out(self):
+    def test_verification_can_be_left_out(self):
         self.succeeds(*self.one_row("phantom:marschner-lobb:16"), env=self.own_cache(), notes=self.PAGE)
-        self.assertIsNone(self.new_report()["refinement"])
-        self.assertFalse((self.folder / "err" / "refinement.csv").exists())
+        report = self.new_report()
+        self.assertEqual((report["refinement"], report["worst_ray"]), (None, None))
+        self.assertTrue(report["predicted_step"] and report["convergence"])
+        files = {path.name for path in (self.folder / "err").iterdir()}
+        self.assertEqual(files & {"refinement.csv", "worst_ray.csv", "worst_ray.json"}, set())
 
     def test_error_falls_with_the_spacing_squared(self):
         rays = self.rows(target="rgba16f", layers=0)  # what is blended once is rounded once
@@ -213,21 +222,24 @@ class Accuracy(CliTest):
         lines = finished.read_text().splitlines(keepends=True)
         kept, cut = lines[:-2], json.loads(lines[-1])["id"]
         finished.write_text("".join([*kept, lines[-2], lines[-1][:40]]))
-        self.succeeds(*self.GRID, env=self.env, notes=rf"slabcast: err: {len(kept)} rows [^\n]* are kept\n{self.PAGE}")
+        rows_alone = (*self.GRID, "--verification", "off")
+        self.succeeds(*rows_alone, env=self.env,
+                      notes=rf"slabcast: err: {len(kept)} rows [^\n]* are kept\n{self.PAGE}")
         again = json.loads((self.folder / "err" / "error.json").read_text())["rows"]
         for before, after in zip(self.rows(), again, strict=True):
             self.assertEqual(before["error"], after["error"])
             if before["id"] != cut:
                 self.assertEqual(before, after)
         written = finished.stat().st_mtime_ns
-        self.succeeds(*self.GRID, env=self.env, notes=rf"slabcast: err: {len(kept) + 1} rows [^\n]* kept\n{self.PAGE}")
+        self.succeeds(*rows_alone, env=self.env,
+                      notes=rf"slabcast: err: {len(kept) + 1} rows [^\n]* kept\n{self.PAGE}")
         self.assertEqual(finished.stat().st_mtime_ns, written)
         self.assertEqual(json.loads((self.folder / "err" / "error.json").read_text())["rows"], again)
 
     def test_other_settings_are_refused_unless_they_may_start_anew(self):
         self.copied()
         other = (*self.GRID[:-6], "--classify", "post", "--target", "rgba8", "--jitter", "off", "--termination", "off",
-                 "--camera", "40,10,3")
+                 "--camera", "40,10,3", "--verification", "off")
         self.fails(*other, env=self.env, cause="err: holds an 'error' run of marschner-lobb .*which differs in camera:",
                    remedy="give --out another folder, or --fresh")
         self.succeeds(*other, "--fresh", env=self.env, notes=self.PAGE)
@@ -242,7 +254,7 @@ class Accuracy(CliTest):
         """The arguments of a run that measures a single row, but for the axes that are given."""
         axes = {"size": "16x16", "layer-spacing": 2, "layers-per-plane": 0, "classify": "post", "target": "rgba8",
                 "termination": "off", "jitter": "off", **{name.replace("_", "-"): axes[name] for name in axes}}
-        return ("error", volume, "--out", "err", "--frames", "3", "--refinement", "off", *more,
+        return ("error", volume, "--out", "err", "--frames", "3", "--verification", "off", *more,
                 *(word for name, value in axes.items() for word in (f"--{name}", value)))
 
     def new_report(self):

@@ -66,7 +66,7 @@ TEST(Refinement, TheTruthIsExact) {
 }
 
 TEST(Refinement, VoxelsAreTheFieldAtTheirCentres) {
-    const Volume volume = refinedVolume(4);
+    const Volume volume = refinedVolume(refinedInput().field, 4);
     const FormulaInput input = refinedInput();
     for (const glm::ivec3 v : {glm::ivec3(0), glm::ivec3(3, 1, 2)}) {
         const glm::dvec3 uvw = (glm::dvec3(v) + 0.5) / 4.0;
