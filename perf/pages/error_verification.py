@@ -62,9 +62,11 @@ def families(errors):
     found = [entry for entry in errors.raw.get("convergence") or [] if isinstance(entry, dict)]
     lines = [[esc(plots.family_name(entry)), _levels(entry), _order(entry.get("order")),
               f"{_order(entry.get('expected_order'))}<br><i>{esc(entry.get('why_expected', ''))}</i>",
-              _asymptotic(entry), _verdict(entry)] for entry in found]
+              _asymptotic(entry), _verdict(entry) if entry.get("asymptotic") else "cannot be told"] for entry in found]
     head = ["this volume’s sampling", "RMSE, coarse to fine", "order", "expected", "asymptotic", "verdict"]
-    return table(head, lines, css="budgets") if lines else ""
+    note = ("One lattice alone: how faces of the volume and corners of the transfer function cut its layers is chance, "
+            "and what is not asymptotic at these spacings may be at finer ones.")
+    return table(head, lines, css="budgets") + f'<p class="note">{note}</p>' if lines else ""
 
 
 def predicted_step(errors):
