@@ -11,6 +11,7 @@
 #include "core/scene/texel_format.h"
 #include "perf/stability/appearance.h"
 #include "perf/stability/case.h"
+#include "perf/stability/families.h"
 
 namespace slabcast::stability {
 
@@ -116,26 +117,5 @@ std::vector<glm::dvec4> continuousPicture(const Scene& scene, const View& view, 
 double shareOfPixelBound(const Scene& scene, const Drawn& drawn, const View& view);
 /// The reason that goes with it.
 extern const char* const kPixelBoundReason;
-
-/// Families of cases, each in a file of its own name.
-void stiffCases(Bench& bench);
-void extremeDataCases(Bench& bench);
-void extremeViewCases(Bench& bench);
-void extremePlanCases(Bench& bench);
-void inTimeCases(Bench& bench);
-void halfPrecisionCases(Bench& bench);
-void leftOutCases(Bench& bench);
-void symmetryCases(Bench& bench);
-void cutRayCases(Bench& bench);
-void conditioningCases(Bench& bench);
-void opticalDepthCases(Bench& bench);
-void manufacturedCases(Bench& bench);
-
-struct Family {
-    const char* name;
-    const char* title;
-    void (*run)(Bench& bench);
-};
-std::span<const Family> families();
 
 } // namespace slabcast::stability
