@@ -10,7 +10,12 @@ from page_input import number, picture, section as part
 
 def _order(value):
     value = number(value)
-    return MISSING if value is None else f"{value:.2f}".replace("-", "−")
+    return MISSING if value is None else f"{round(value, 2) + 0.0:.2f}".replace("-", "−")
+
+
+def _voxels(value):
+    text = figures(value)
+    return f"{text} voxel{'' if text == '1' else 's'}"
 
 
 def _verdict(entry):
@@ -50,8 +55,8 @@ def refinement(errors):
     why = "".join(f"<dt>{esc(s.get('kind'))}: {esc(s.get('method'))}</dt><dd>{esc(s.get('why_expected', ''))}</dd>"
                   for s in found)
     note = ("Order: how fast the error falls from the last level but one to the last that is above the floor. By "
-            "changes: the same of the differences from level to level, which know of no truth; where the two are "
-            "apart, the method converges to something else. Asymptotic: the last three orders agree.")
+            "changes: the same of the differences from level to level, which know of no truth: what has an order by its "
+            "changes and none against the truth converges to something else. Asymptotic: the last three orders agree.")
     return (drawn + table(head, lines, css="budgets", row_css=css)
             + f'<p class="note">{note}</p><details><summary>Why these orders</summary>'
             f'<dl class="why">{why}</dl></details>')
@@ -75,10 +80,10 @@ def predicted_step(errors):
         return ""
     ratio = number(found.get("ratio"))
     both = facts([
-        ("Predicted, steepest visible gradient", f"{figures(found.get('predicted_voxels'))} voxels "
+        ("Predicted, steepest visible gradient", f"{_voxels(found.get('predicted_voxels'))} "
                                                  f"({figures(found.get('predicted_mm'))} mm)"),
-        ("Predicted, 99 % of the visible cells", f"{figures(found.get('predicted_p99_voxels'))} voxels"),
-        ("Measured", f"{figures(found.get('measured_voxels'))} voxels, RMSE {scientific(found.get('measured_rmse'))}"),
+        ("Predicted, 99 % of the visible cells", _voxels(found.get("predicted_p99_voxels"))),
+        ("Measured", f"{_voxels(found.get('measured_voxels'))}, RMSE {scientific(found.get('measured_rmse'))}"),
         ("Measured over predicted", f"{figures(ratio)} (of 99 %: {figures(found.get('ratio_p99'))})"),
         ("Transfer function, highest frequency", f"{figures(found.get('transfer_cycles_per_unit'))} cycles a unit "
                                                  f"({figures(100 * (number(found.get('energy_share')) or 0))} % of "
