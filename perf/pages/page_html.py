@@ -120,7 +120,7 @@ def figure(draw, measured, caption):
         return ""
     return (f'<figure><div class="wide">{wide}</div><div class="narrow">{narrow}</div>'
             f"<figcaption>{caption} <span>Files: <code>figures/{esc(wide.name)}.svg</code>, <code>.pdf</code>; for a "
-            f"column: <code>figures/{esc(narrow.name)}.svg</code>, <code>.pdf</code>.</span></figcaption></figure>")
+            f"column: <code>figures/{esc(narrow.name)}.svg</code>.</span></figcaption></figure>")
 
 
 def image(data, alt):

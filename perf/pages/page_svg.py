@@ -36,7 +36,7 @@ class Drawn(str):
 
 def svg(figure, name, key=()):
     """Inline SVG that scales with the page; ids are made unique, for a page holds several. The same goes to FILES,
-    as SVG and PDF. `key`: entries of a legend, drawn above the plots, by which the figure grows: (text, colour, marker
+    and as PDF too, unless it is a narrow one ("NAME-n"). `key`: entries of a legend, drawn above the plots, by which the figure grows: (text, colour, marker
     or None, hollow, dashes in points as "4 2", "" for a solid line, None for no line)."""
     if key:
         _add_legend(figure, key)
@@ -49,10 +49,11 @@ def svg(figure, name, key=()):
     # Text is text: where the font is not there, one of nearly its widths.
     text = text.replace("'DejaVu Sans'", "'DejaVu Sans', Verdana, sans-serif")
     FILES[f"{name}.svg"] = f'<?xml version="1.0" encoding="utf-8" standalone="no"?>\n{text}'.encode()
-    figure.set_layout_engine("none")  # laid out already
-    pages = io.BytesIO()
-    figure.savefig(pages, format="pdf", transparent=True, metadata={"CreationDate": None})
-    FILES[f"{name}.pdf"] = pages.getvalue()
+    if not name.endswith("-n"):  # embedding fonts takes as long as drawing: the wide one only
+        figure.set_layout_engine("none")  # laid out already
+        pages = io.BytesIO()
+        figure.savefig(pages, format="pdf", transparent=True, metadata={"CreationDate": None})
+        FILES[f"{name}.pdf"] = pages.getvalue()
     plt.close(figure)
     drawn = Drawn(re.sub(r' width="[\d.]+pt"| height="[\d.]+pt"', "", text, count=2))
     drawn.name = name
