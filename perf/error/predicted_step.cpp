@@ -65,22 +65,49 @@ std::size_t halfWaves(const std::vector<double>& samples, double share) {
     return energies.size();
 }
 
-/// Around a cell, x fastest: the gradient's greatest length at its corners.
-double greatestGradient(const std::array<double, 8>& corners, glm::dvec3 spacingMm) {
+/// Around a cell, x fastest: the gradient's greatest length at its corners. The slope along each
+/// axis is that of one of its four edges, and every corner has one of each axis.
+double greatestGradient(const std::array<double, 8>& corners, glm::dvec3 perMm) {
+    std::array<double, 12> squares; // four edges along x, four along y, four along z
+    for (unsigned k = 0; k < 4; ++k) {
+        const double x = (corners[2 * k + 1] - corners[2 * k]) * perMm.x;
+        const unsigned alongY = (k & 1U) + 4 * (k >> 1U);
+        const double y = (corners[alongY + 2] - corners[alongY]) * perMm.y;
+        const double z = (corners[k + 4] - corners[k]) * perMm.z;
+        squares[k] = x * x;
+        squares[4 + k] = y * y;
+        squares[8 + k] = z * z;
+    }
     double greatest = 0.0;
     for (unsigned k = 0; k < 8; ++k) {
-        const glm::dvec3 slope(corners[k | 1U] - corners[k & ~1U],
-                               corners[k | 2U] - corners[k & ~2U],
-                               corners[k | 4U] - corners[k & ~4U]);
-        greatest = std::max(greatest, glm::length(slope / spacingMm));
+        greatest = std::max(greatest, squares[k >> 1U] + squares[4 + (k & 1U) + 2 * (k >> 2U)] +
+                                          squares[8 + (k & 3U)]);
     }
-    return greatest;
+    return std::sqrt(greatest);
 }
 
 struct SliceGradients {
     std::vector<float> visible; // per cell
     double anywhere = 0.0;
 };
+
+template <class Field>
+SliceGradients sliceOf(const Field& field, glm::ivec3 dims, int z, glm::dvec3 perMm,
+                       const TransferRamps& ramps) {
+    SliceGradients slice;
+    for (int y = 0; y < std::max(dims.y - 1, 1); ++y) {
+        for (int x = 0; x < std::max(dims.x - 1, 1); ++x) {
+            const std::array<double, 8> corners = field.cornersOf({x, y, z});
+            const auto [low, high] = std::minmax_element(corners.begin(), corners.end());
+            const double steepest = *low == *high ? 0.0 : greatestGradient(corners, perMm);
+            slice.anywhere = std::max(slice.anywhere, steepest);
+            if (ramps.anyVisible(ramps.holding(*low), ramps.holding(*high))) {
+                slice.visible.push_back(static_cast<float>(steepest));
+            }
+        }
+    }
+    return slice;
+}
 
 struct Measured {
     double spacing;
@@ -172,28 +199,17 @@ double transferFrequency(const TransferFunction& tf, double lowValue, double hig
 FieldGradients gradientsOf(const Texels& texels, const VolumeGeometry& geometry,
                            const TransferFunction& tf) {
     const TransferRamps ramps(tf, CompositingSpace::Display);
-    const glm::ivec3 dims = texels.dims;
-    std::vector<SliceGradients> slices(static_cast<std::size_t>(std::max(dims.z - 1, 1)));
+    const glm::dvec3 perMm = 1.0 / geometry.spacingMm;
+    std::vector<SliceGradients> slices(static_cast<std::size_t>(std::max(texels.dims.z - 1, 1)));
     visitTexelFormat(texels.format, [&](auto codec) {
         const TrilinearField field(texels, codec);
-        parallelFor(
-            static_cast<std::int64_t>(slices.size()), 1, [&](std::int64_t begin, std::int64_t end) {
-                for (auto z = static_cast<int>(begin); z < end; ++z) {
-                    SliceGradients& slice = slices[static_cast<std::size_t>(z)];
-                    for (int y = 0; y < std::max(dims.y - 1, 1); ++y) {
-                        for (int x = 0; x < std::max(dims.x - 1, 1); ++x) {
-                            const std::array<double, 8> corners = field.cornersOf({x, y, z});
-                            const double steepest = greatestGradient(corners, geometry.spacingMm);
-                            const auto [low, high] =
-                                std::minmax_element(corners.begin(), corners.end());
-                            slice.anywhere = std::max(slice.anywhere, steepest);
-                            if (ramps.anyVisible(ramps.holding(*low), ramps.holding(*high))) {
-                                slice.visible.push_back(static_cast<float>(steepest));
-                            }
+        parallelFor(static_cast<std::int64_t>(slices.size()), 1,
+                    [&](std::int64_t begin, std::int64_t end) {
+                        for (std::int64_t z = begin; z < end; ++z) {
+                            slices[static_cast<std::size_t>(z)] =
+                                sliceOf(field, texels.dims, static_cast<int>(z), perMm, ramps);
                         }
-                    }
-                }
-            });
+                    });
         return true;
     });
     FieldGradients gradients;

@@ -76,6 +76,22 @@ TEST(PredictedStep, GradientsAreOfMillimetresAndOfWhatIsVisible) {
     EXPECT_EQ(gradientsOf(texels, geometry, tfOf({{.value = 0.0, .opacity = 0.0}})).greatest, 0.0);
 }
 
+/// Each corner of a cell has a slope of its own along each axis: the steepest is found at any.
+TEST(PredictedStep, TheSteepestCornerOfACellIsFound) {
+    const VolumeGeometry geometry{.dims = glm::ivec3(2), .spacingMm = {1.0, 2.0, 4.0}};
+    const TransferFunction tf = tfOf({{.value = 0.0, .opacity = 0.5}});
+    for (int peak = 0; peak < 8; ++peak) {
+        const Texels texels = floatTexels(
+            geometry, [peak](glm::ivec3 v) { return v.x + 2 * v.y + 4 * v.z == peak ? 8.0 : 0.0; });
+        const double expected = glm::length(glm::dvec3(8.0, 4.0, 2.0));
+        EXPECT_NEAR(gradientsOf(texels, geometry, tf).greatest, expected, 1e-6) << peak;
+    }
+    // Along an edge whose two corners are equal there is no slope.
+    const Texels edge =
+        floatTexels(geometry, [](glm::ivec3 v) { return v.y + v.z == 0 ? 8.0 : 0.0; });
+    EXPECT_NEAR(gradientsOf(edge, geometry, tf).greatest, std::hypot(4.0, 2.0), 1e-6);
+}
+
 /// f of 3 cycles a unit along a gradient of 2 a mm is 6 cycles a mm: Nyquist asks for a twelfth.
 TEST(PredictedStep, IsNyquistsOfFrequencyTimesGradient) {
     EXPECT_NEAR((StepPrediction{3.0, {}}.stepMm(2.0)), 1.0 / 12.0, 1e-15);
