@@ -23,7 +23,7 @@ struct FlipPicture {
 
 /// Premultiplied RGBA in a compositing space, so over black, of `size`; colours outside [0, 1] are
 /// clamped. Beyond the border its pixels go on.
-/// Cost: O(pixels * pixelsPerDegree), all cores: about 0.6 us a pixel and core at 67.
+/// Cost: O(pixels * pixelsPerDegree), all cores: about 1 us a pixel of one core at 67.
 FlipPicture flipPicture(std::span<const glm::dvec4> picture, glm::ivec2 size,
                         CompositingSpace space, double pixelsPerDegree = kPixelsPerDegree);
 
