@@ -64,7 +64,7 @@ void record(Bench& bench, const Convergence& found) {
                                        .panel = "",
                                        .x = double(row.steps),
                                        .y = row.error,
-                                       .xLabel = found.steps,
+                                       .xLabel = "layers, or knots of the transfer function",
                                        .yLabel = "largest difference from the solution",
                                        .bound = row.bound}});
         const double power = found.order == 1.0 ? 1.0 : 2.0;
@@ -181,7 +181,7 @@ Pixels samplesOf(const Scene& scene, const DiscreteTransfer& transfer, const Vie
 void integralCases(Bench& bench, const Scene& scene, const View& view) {
     const double lean = manufactured::mostLean(view, kPixels);
     Convergence found{
-        "integral", "knots of the transfer function", 2.0,
+        "integral, by knots", "knots", 2.0,
         "straight lines between knots for opacity and colour: h^2/8 of their second derivatives; "
         "and the integral's tolerance, 1e-13 for every piece"};
     for (int knots = 16; knots <= kKnots; knots *= 2) {
