@@ -94,11 +94,13 @@ void bindReportFolder(Command& command, FolderOptions& folder, const std::string
              .group = "Output",
              .required = true},
             folder.path);
-    addFlag(command,
-            {.flag = "--fresh",
-             .help = "start anew in a folder that holds another run, and leave nothing of that",
-             .group = "Output"},
-            folder.fresh);
+    addFlag(
+        command,
+        {.flag = "--fresh",
+         .help =
+             "start anew in a folder that holds another run: its tables and its page are removed",
+         .group = "Output"},
+        folder.fresh);
 }
 
 namespace {
