@@ -6,6 +6,8 @@ namespace slabcast {
 
 inline constexpr int kFewestFrames = 3; // of a row: one slow frame is not the median
 
+inline constexpr int kFewestForPercentiles = 9; // below, the 10th is the least or its neighbour
+
 /// Of several frames, ms.
 struct FrameTimes {
     double median = 0.0, min = 0.0, max = 0.0, p10 = 0.0, p90 = 0.0;

@@ -34,6 +34,10 @@ public:
     /// The same of a picture as PNG.
     virtual Result<void> savePicture(const std::string& file, const ReportPicture& picture) = 0;
     virtual bool has(const std::string& file) const = 0;
+    /// Leaves nothing of this name; where that cannot be, leaves it.
+    virtual void remove(const std::string& file) = 0;
+    /// Whether a run that it holds may be replaced by another: somebody asked for that.
+    virtual bool mayBeReplaced() const { return false; }
     /// All of it; nothing where it is missing or cannot be read.
     virtual std::optional<std::string> read(const std::string& file) const = 0;
 };

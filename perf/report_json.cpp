@@ -62,11 +62,11 @@ Json toJson(const BuiltSkip& skip) {
         return nullptr;
     }
     const SkipOptions& o = skip.options;
-    Json parameters = {{"block_edge", o.blockEdgeVoxels}};
+    Json parameters = {{"skip_block", o.blockEdgeVoxels}};
     const bool isBitfield = o.structure == SkipStructure::BitfieldOctree;
     const bool isPartitioned = o.structure == SkipStructure::Partitioned;
     if (isBitfield) {
-        parameters["bits"] = o.bits;
+        parameters["skip_bits"] = o.bits;
     }
     if (isPartitioned) {
         parameters["partitions"] = o.partitions;
@@ -92,8 +92,21 @@ Json toJson(const FrameTimes& t) {
     if (t.count == 0) {
         return nullptr;
     }
-    return {{"median", t.median}, {"min", t.min}, {"max", t.max},
-            {"p10", t.p10},       {"p90", t.p90}, {"n", t.count}};
+    const bool enough = t.count >= kFewestForPercentiles;
+    return {{"median", t.median},
+            {"min", t.min},
+            {"max", t.max},
+            {"p10", enough ? Json(t.p10) : Json()},
+            {"p90", enough ? Json(t.p90) : Json()},
+            {"n", t.count}};
+}
+
+void addRatio(Json& row, const std::string& name, const PairedRatio& ratio,
+              const std::string& coverage) {
+    row[name] = ratio.median;
+    row[name + "_low"] = ratio.interval.low;
+    row[name + "_high"] = ratio.interval.high;
+    row[coverage] = ratio.interval.coverage;
 }
 
 Json toJson(const Result<WorkCounters>& counters) {
@@ -107,6 +120,14 @@ Json toJson(const Result<WorkCounters>& counters) {
             {"skip_fetches", counters->skipFetches},
             {"stretches", counters->stretches},
             {"blocks_visited", counters->blocksVisited}};
+}
+
+Json memoryOf(const Renderer& renderer, const RunInfo& run) {
+    const GpuMemory gpu = renderer.gpuMemory();
+    return {{"host_peak_bytes", run.peakHostBytes ? run.peakHostBytes() : 0},
+            {"gpu_volume_bytes", gpu.volumeBytes},
+            {"gpu_skip_bytes", gpu.skipBytes},
+            {"gpu_other_bytes", gpu.otherBytes}};
 }
 
 Json reportHeader(const RunInfo& run, const gl::Caps& caps) {

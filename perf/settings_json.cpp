@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "perf/report_json.h"
+#include "perf/stage.h"
 
 namespace slabcast {
 
@@ -27,6 +28,13 @@ Json toJson(const Settings& settings) {
         all[keyOf(setting.name)] = toJson(setting, setting.read(settings));
     }
     return all;
+}
+
+Json conditionsOf(const StageDesc& stage) {
+    return {{"size", Json::list({stage.size.x, stage.size.y})},
+            {"camera", toJson(stage.camera)},
+            {"fov_degrees", stage.fovDegrees},
+            {"settings", toJson(stage.settings)}};
 }
 
 namespace {

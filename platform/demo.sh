@@ -35,7 +35,7 @@ newer "$skull" assets/prepare_skull.py ||
 newer "$picture" "$skull" "$slabcast" platform/demo.sh ||
     "$slabcast" render "$skull" -o "$picture" "${renderOptions[@]}"
 newer "$report" "$skull" "$slabcast" platform/demo.sh ||
-    "$slabcast" sweep "$skull" --out "$out/sweep" "${sweepOptions[@]}"
+    "$slabcast" sweep "$skull" --out "$out/sweep" --fresh "${sweepOptions[@]}"
 
 echo
 echo "picture  $PWD/$picture"

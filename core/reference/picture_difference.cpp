@@ -59,6 +59,42 @@ double squared(double x) {
     return x * x;
 }
 
+/// Two passes: the sum of squares is taken around the mean, so that a small scatter beside a large
+/// bias keeps its digits.
+ErrorMoments momentsOf(std::span<const glm::dvec4> picture, std::span<const glm::dvec4> reference,
+                       int channel) {
+    const auto count = static_cast<double>(picture.size());
+    ErrorMoments moments;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < picture.size(); ++i) {
+        const double apart = picture[i][channel] - reference[i][channel];
+        sum += apart;
+        moments.max = std::max(moments.max, std::abs(apart));
+    }
+    moments.bias = sum / count;
+    double aroundMean = 0.0;
+    for (std::size_t i = 0; i < picture.size(); ++i) {
+        aroundMean += squared(picture[i][channel] - reference[i][channel] - moments.bias);
+    }
+    moments.deviation = std::sqrt(aroundMean / count);
+    moments.rmse = std::hypot(moments.bias, moments.deviation);
+    return moments;
+}
+
+/// The moments of R, G and B together: the law of total variance.
+void addTogether(PictureDifference& result) {
+    double squares = 0.0;
+    for (int channel = 0; channel < 3; ++channel) {
+        result.bias += result.channels[channel].bias / 3.0;
+    }
+    for (int channel = 0; channel < 3; ++channel) {
+        const ErrorMoments& moments = result.channels[channel];
+        squares += squared(moments.deviation) + squared(moments.bias - result.bias);
+        result.max = std::max(result.max, moments.max);
+    }
+    result.deviation = std::sqrt(squares / 3.0);
+}
+
 } // namespace
 
 glm::dvec3 labFromLinear(glm::dvec3 linear) {
@@ -121,16 +157,24 @@ PictureDifference difference(std::span<const glm::dvec4> picture,
                 });
     PictureDifference result;
     double squares = 0.0, sumDeltaE = 0.0;
+    std::size_t visible = 0, visibleAlpha = 0;
     for (std::size_t i = 0; i < picture.size(); ++i) {
-        const glm::dvec3 apart = glm::abs(glm::dvec3(picture[i] - reference[i]));
-        squares += glm::dot(apart, apart);
-        result.max = std::max({result.max, apart.x, apart.y, apart.z});
+        const glm::dvec4 apart = glm::abs(picture[i] - reference[i]);
+        squares += glm::dot(glm::dvec3(apart), glm::dvec3(apart));
+        visible += std::max({apart.x, apart.y, apart.z}) > kVisibleDifference ? 1 : 0;
+        visibleAlpha += apart.w > kVisibleDifference ? 1 : 0;
         sumDeltaE += deltaE[i];
     }
+    for (int channel = 0; channel < 4; ++channel) {
+        result.channels[channel] = momentsOf(picture, reference, channel);
+    }
+    addTogether(result);
     const auto count = static_cast<double>(picture.size());
     result.rmse = std::sqrt(squares / (3.0 * count));
     result.psnr = result.rmse > 0.0 ? -20.0 * std::log10(result.rmse)
                                     : std::numeric_limits<double>::infinity();
+    result.visibleShare = static_cast<double>(visible) / count;
+    result.visibleAlphaShare = static_cast<double>(visibleAlpha) / count;
     result.meanDeltaE = sumDeltaE / count;
     // Nearest rank: the least value that 99.9 % of the pixels do not exceed.
     const auto rank = deltaE.begin() + static_cast<std::ptrdiff_t>(std::ceil(0.999 * count)) - 1;

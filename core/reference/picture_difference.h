@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 
 #include <glm/glm.hpp>
@@ -7,6 +8,15 @@
 #include "core/transfer/transfer_function.h"
 
 namespace slabcast {
+
+/// What is off everywhere (bias: the mean of picture - reference) apart from what scatters around
+/// it (deviation: its standard deviation): rmse^2 = bias^2 + deviation^2.
+struct ErrorMoments {
+    double bias = 0.0;
+    double deviation = 0.0;
+    double rmse = 0.0;
+    double max = 0.0; // of the absolute difference
+};
 
 /// How far one picture is from another. RMSE, PSNR (peak 1) and largest difference are over R, G, B
 /// in the compositing space, composited over black; the perceptual difference is CIEDE2000 per
@@ -17,7 +27,15 @@ struct PictureDifference {
     double max = 0.0;
     double meanDeltaE = 0.0;
     double p999DeltaE = 0.0;
+    double bias = 0.0; // of R, G and B together, as rmse and max are
+    double deviation = 0.0;
+    std::array<ErrorMoments, 4> channels; // R, G, B, and alpha on its own
+    double visibleShare = 0.0;            // of pixels off by more than 1/255 in any of R, G, B
+    double visibleAlphaShare = 0.0;       // in alpha
 };
+
+/// What eight bits can show: a difference beyond it counts as visible.
+inline constexpr double kVisibleDifference = 1.0 / 255.0;
 
 /// Of two pictures of one size, not empty, premultiplied RGBA (so: over black), in one compositing
 /// space. Colours outside [0, 1] are clamped for the perceptual part only.

@@ -7,6 +7,7 @@
 #include "perf/edit/summary.h"
 #include "perf/json.h"
 #include "perf/report_json.h"
+#include "perf/settings_json.h"
 #include "perf/stage.h"
 
 namespace slabcast {
@@ -17,7 +18,7 @@ constexpr CsvColumn kColumns[] = {{"frame", "/frame"},
                                   {"step", "/step"},
                                   {"edit", "/edit"},
                                   {"progress", "/progress"},
-                                  {"structure", "/structure"},
+                                  {"skip", "/skip"},
                                   {"frame_ms", "/frame_ms"},
                                   {"edit_ms", "/parts/edit_ms"},
                                   {"work_ms", "/parts/work_ms"},
@@ -26,6 +27,7 @@ constexpr CsvColumn kColumns[] = {{"frame", "/frame"},
                                   {"octree_ms", "/octree_ms"},
                                   {"octree_worst_ms", "/octree_worst_ms"},
                                   {"over_octree", "/over_octree"},
+                                  {"budget_ms", "/budget_ms"},
                                   {"naive_ms", "/naive_ms"},
                                   {"equal", "/equal"},
                                   {"fragments", "/counters/fragments"},
@@ -37,25 +39,25 @@ constexpr CsvColumn kColumns[] = {{"frame", "/frame"},
                                   {"blocks_visited", "/counters/blocks_visited"}};
 
 Json conditionsOf(const Stage& stage, const EditDesc& desc, const FramePlan& plan) {
-    const StageDesc& picture = stage.desc();
-    return {{"size", Json::list({picture.size.x, picture.size.y})},
-            {"camera", toJson(picture.camera)},
-            {"turn_degrees", desc.turnDegrees},
-            {"start", desc.script.start.name},
-            {"edits", desc.origin},
-            {"classification", name(desc.settings.classification)},
-            {"planes", plan.planes},
-            {"layers_per_plane", plan.layersPerPlane},
-            {"work_budget_ms", desc.workBudgetMs},
-            {"quiet_frames", desc.live.quietFrames},
-            {"octree_frames", desc.octreeFrames},
-            {"replays", desc.replays},
-            {"verified", desc.verify}};
+    StageDesc picture = stage.desc();
+    picture.settings = desc.settings; // the stage's are without skipping
+    Json all = slabcast::conditionsOf(picture);
+    all.update({{"turn_degrees", desc.turnDegrees},
+                {"start", desc.script.start.name},
+                {"edits", desc.origin},
+                {"planes", plan.planes},
+                {"layers_per_plane", plan.layersPerPlane},
+                {"work_budget_ms", desc.workBudgetMs},
+                {"quiet_frames", desc.live.quietFrames},
+                {"octree_frames", desc.octreeFrames},
+                {"replays", desc.replays},
+                {"verified", desc.verify}});
+    return all;
 }
 
 Json buildOf(const EditBuild& build) {
     return {{"structure", name(build.structure)},
-            {"block_edge", build.blockEdge},
+            {"skip_block", build.blockEdge},
             {"gpu_bytes", build.gpuBytes}};
 }
 
@@ -69,12 +71,12 @@ Json buildsOf(const EditBuilds& builds) {
     return result;
 }
 
-Json rowOf(const EditRow& row, std::size_t index) {
+Json rowOf(const EditRow& row, std::size_t index, std::optional<double> budgetMs) {
     Json result = {{"frame", index},
                    {"step", row.step},
                    {"edit", row.edited},
                    {"progress", name(row.progress)},
-                   {"structure", row.structure},
+                   {"skip", row.structure},
                    {"frame_ms", row.frameMs},
                    {"parts",
                     {{"edit_ms", row.editMs},
@@ -84,6 +86,7 @@ Json rowOf(const EditRow& row, std::size_t index) {
                    {"octree_ms", row.octreeMs},
                    {"octree_worst_ms", row.octreeWorstMs},
                    {"over_octree", row.frameMs / row.octreeMs},
+                   {"budget_ms", budgetOf(row, budgetMs)},
                    {"naive_ms", row.naiveMs},
                    {"counters", toJson(row.counters)}};
     if (row.equal) {
@@ -103,11 +106,10 @@ Json summaryJson(const EditSummary& s, const EditDesc& desc, double worstOfRepla
                     {"worst_added_over_octree_frame", s.worstAdded},
                     {"worst_octree_frame_over_median", s.worstOctreeSpread},
                     {"worst_of_single_replays", worstOfReplays},
-                    {"frames_over_octree_budget", s.framesOverOctreeBudget},
                     {"frames", s.frames},
                     {"edits", s.edits},
-                    {"budget_ms", s.budgetMs},
-                    {"budget_given", desc.budgetMs.has_value()},
+                    {"budget_ms", desc.budgetMs ? Json(*desc.budgetMs) : Json()},
+                    {"budget_over_octree", kBudgetOverOctree},
                     {"frames_over_budget", s.framesOverBudget},
                     {"frame_ms", toJson(s.frameMs)},
                     {"edit_frame_ms", toJson(s.editFrameMs)},
@@ -138,7 +140,7 @@ EditReport editReportOf(const Stage& stage, const EditDesc& desc, const EditMeas
     report["summary"] =
         summaryJson(summaryOf(rows, desc.budgetMs), desc, worstOverOctree(measured.replays));
     for (const EditRow& row : rows) {
-        report["rows"].push_back(rowOf(row, report["rows"].size()));
+        report["rows"].push_back(rowOf(row, report["rows"].size(), desc.budgetMs));
     }
     const auto isWrong = [](const EditRow& row) { return !row.equal.value_or(true); };
     return {.json = report.dump(2) + "\n",

@@ -99,7 +99,11 @@ double worstOverOctree(const EditReplays& replays) {
     return worst;
 }
 
-EditSummary summaryOf(const std::vector<EditRow>& rows, std::optional<double> budgetMs) {
+double budgetOf(const EditRow& row, std::optional<double> givenMs) {
+    return givenMs.value_or(kBudgetOverOctree * row.octreeMs);
+}
+
+EditSummary summaryOf(const std::vector<EditRow>& rows, std::optional<double> givenMs) {
     EditSummary s{.frames = static_cast<int>(rows.size()), .edits = countOf(rows, isEdit)};
     s.frameMs = timesOf(rows, frameMs);
     s.octreeMs = timesOf(rows, [](const EditRow& row) { return row.octreeMs; });
@@ -116,13 +120,10 @@ EditSummary summaryOf(const std::vector<EditRow>& rows, std::optional<double> bu
     s.worstOctreeSpread =
         worstOf(rows, [](const EditRow& row) { return row.octreeWorstMs / row.octreeMs; });
     s.worstNaive = worstOf(rows, [](const EditRow& row) { return row.naiveMs / row.octreeMs; });
-    s.budgetMs = budgetMs.value_or(kBudgetOverOctree * s.octreeMs.median);
-    s.framesOverOctreeBudget = countOf(
-        rows, [](const EditRow& row) { return row.frameMs > kBudgetOverOctree * row.octreeMs; });
     s.framesOverBudget =
-        countOf(rows, [&](const EditRow& row) { return row.frameMs > s.budgetMs; });
+        countOf(rows, [&](const EditRow& row) { return row.frameMs > budgetOf(row, givenMs); });
     s.naiveFramesOverBudget =
-        countOf(rows, [&](const EditRow& row) { return row.naiveMs > s.budgetMs; });
+        countOf(rows, [&](const EditRow& row) { return row.naiveMs > budgetOf(row, givenMs); });
     for (const EditRow& row : rows) {
         ++s.framesByStructure[row.structure];
     }

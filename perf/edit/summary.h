@@ -20,6 +20,10 @@ double worstOverOctree(const EditReplays& replays);
 
 inline constexpr double kBudgetOverOctree = 1.5; // what a frame may take, in octree frames
 
+/// What this frame may take, ms: what was given for all of them, or by the octree's frame of the
+/// same view and transfer function.
+double budgetOf(const EditRow& row, std::optional<double> givenMs);
+
 /// What all frames come to. Ratios are each of a frame to the octree frame of the same picture.
 struct EditSummary {
     int frames = 0;
@@ -30,9 +34,7 @@ struct EditSummary {
     double worstAdded = 0.0;        // 1 and the share that edit, work and uploads are
     double worstOctreeSpread = 0.0; // of the octree's frames, over their median
     double worstNaive = 0.0;
-    double budgetMs = 0.0;
-    int framesOverOctreeBudget = 0; // over kBudgetOverOctree
-    int framesOverBudget = 0;
+    int framesOverBudget = 0; // each over its own: budgetOf()
     int naiveFramesOverBudget = 0;
     std::map<std::string, int> framesByStructure;
     int handOvers = 0; // how often a rebuilt structure took over
@@ -42,8 +44,8 @@ struct EditSummary {
     std::optional<int> framesToCorrect;
 };
 
-/// `budgetMs`: what a frame may take; by the octree's median where none is given.
+/// `givenMs`: what any frame may take; by budgetOf() each where none is given.
 /// Tested by: summary_test.cpp
-EditSummary summaryOf(const std::vector<EditRow>& rows, std::optional<double> budgetMs);
+EditSummary summaryOf(const std::vector<EditRow>& rows, std::optional<double> givenMs);
 
 } // namespace slabcast

@@ -4,14 +4,15 @@
 #include <utility>
 
 #include "core/base/stopwatch.h"
-#include "core/plan/settings_table.h"
 #include "perf/csv.h"
 #include "perf/error/error_rows.h"
 #include "perf/error/error_store.h"
 #include "perf/error/error_table_json.h"
 #include "perf/error/reference_pictures.h"
 #include "perf/error/scene_key.h"
+#include "perf/error/verification.h"
 #include "perf/json.h"
+#include "perf/settings_json.h"
 
 namespace slabcast {
 
@@ -43,6 +44,22 @@ constexpr CsvColumn kColumns[] = {{"id", "/id"},
                                   {"order_sampling", "/order/sampling"},
                                   {"order_table", "/order/table"},
                                   {"order_gpu", "/order/gpu"}};
+constexpr CsvColumn kMomentColumns[] = {{"bias", "/error/total/bias"},
+                                        {"deviation", "/error/total/deviation"},
+                                        {"red_bias", "/error/total/red_bias"},
+                                        {"red_deviation", "/error/total/red_deviation"},
+                                        {"green_bias", "/error/total/green_bias"},
+                                        {"green_deviation", "/error/total/green_deviation"},
+                                        {"blue_bias", "/error/total/blue_bias"},
+                                        {"blue_deviation", "/error/total/blue_deviation"},
+                                        {"visible_share", "/error/total/visible_share"},
+                                        {"alpha_rmse", "/error/total/alpha_rmse"},
+                                        {"alpha_max", "/error/total/alpha_max"},
+                                        {"alpha_bias", "/error/total/alpha_bias"},
+                                        {"alpha_deviation", "/error/total/alpha_deviation"},
+                                        {"alpha_visible_share", "/error/total/alpha_visible_share"},
+                                        {"flip_mean", "/flip/mean"},
+                                        {"flip_max", "/flip/max"}};
 constexpr CsvColumn kLastColumns[] = {{"date", "/date"}, {"command", "/command"}};
 
 /// All that the continuous picture depends on.
@@ -62,15 +79,10 @@ Json referenceKey(const Stage& stage, const RunInfo& run) {
 
 /// And what a row depends on beyond its own settings.
 Json rowsKey(const Stage& stage, const ErrorDesc& desc, Json key) {
-    const StageDesc& o = stage.desc();
-    const Settings& s = o.settings;
+    const Settings& s = stage.desc().settings;
     key.update({{"device", toJson(stage.caps())},
                 {"texels", name(stage.scene().texels().format)},
-                {"lattice", name(s.lattice)},
-                {"form", get(s, "form")},
-                {"skip", get(s, "skip")},
-                {"skip_block", o.settings.skipOptions.blockEdgeVoxels},
-                {"tighten", s.tighten},
+                {"settings", toJson(s)},
                 {"quick", desc.quick},
                 {"frames", desc.frames}});
     return key;
@@ -78,16 +90,11 @@ Json rowsKey(const Stage& stage, const ErrorDesc& desc, Json key) {
 
 Json conditions(const Stage& stage, const ErrorDesc& desc) {
     const StageDesc& o = stage.desc();
-    const Settings& s = o.settings;
     return {{"size", Json::list({o.size.x, o.size.y})},
             {"camera", toJson(o.camera)},
             {"fov_degrees", o.fovDegrees},
             {"transfer_function", stage.scene().look().tf.name},
-            {"space", name(s.space)},
-            {"lattice", name(s.lattice)},
-            {"form", get(s, "form")},
-            {"skip", get(s, "skip")},
-            {"tighten", s.tighten},
+            {"settings", toJson(o.settings)},
             {"texel_format", name(stage.scene().texels().format)},
             {"quantisation_error", stage.scene().texels().maxQuantisationError},
             {"smallest_voxel_edge_mm", stage.scene().facts().smallestVoxelEdgeMm},
@@ -140,17 +147,12 @@ std::vector<MeasuredError> measuredOf(const Stage& stage, const std::vector<Samp
     return measured;
 }
 
-ErrorStore openStore(const Stage& stage, const ErrorDesc& desc, const RunInfo& run,
-                     ReportFolder& folder) {
-    std::vector<std::string> notes;
+Result<ErrorStore> openStore(const Stage& stage, const ErrorDesc& desc, const RunInfo& run,
+                             ReportFolder& folder) {
     const Json key = referenceKey(stage, run);
-    ErrorStore store = ErrorStore::open(folder, key, rowsKey(stage, desc, key), notes);
-    for (const std::string& note : notes) {
-        if (stage.watcher().say) {
-            stage.watcher().say(note);
-        }
-    }
-    return store;
+    return ErrorStore::open(folder,
+                            {"error", stage.info().name, run.command, rowsKey(stage, desc, key)},
+                            key, stage.watcher());
 }
 
 } // namespace
@@ -158,7 +160,11 @@ ErrorStore openStore(const Stage& stage, const ErrorDesc& desc, const RunInfo& r
 Result<std::vector<MeasuredError>> measureErrors(Stage& stage, const ErrorDesc& desc,
                                                  const RunInfo& run, ReportFolder& folder) {
     const std::string started = timestamp();
-    ErrorStore store = openStore(stage, desc, run, folder);
+    Result<ErrorStore> opened = openStore(stage, desc, run, folder);
+    if (!opened) {
+        return tl::unexpected(opened.error());
+    }
+    ErrorStore& store = *opened;
     if (Result<void> made = makeReference(stage, store, folder); !made) {
         return tl::unexpected(made.error());
     }
@@ -183,8 +189,12 @@ Result<std::vector<MeasuredError>> measureErrors(Stage& stage, const ErrorDesc& 
                    {"front", Json::listOf(frontOf(*rows, timeOf))},
                    {"front_by_fetches", Json::listOf(frontOf(*rows, fetchesOf))},
                    {"rows", *rows}});
+    if (Result<void> added = addVerification(stage, desc, grid, folder, report); !added) {
+        return tl::unexpected(added.error());
+    }
     return folder
-        .write("error.csv", csvOf(*rows, columnsOf({kColumns, kMeasuredColumns, kLastColumns})))
+        .write("error.csv",
+               csvOf(*rows, columnsOf({kColumns, kMomentColumns, kMeasuredColumns, kLastColumns})))
         .and_then([&] { return folder.write("error.json", report.dump(2) + "\n"); })
         .map([&] { return measuredOf(stage, grid, *rows, run); });
 }

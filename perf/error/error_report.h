@@ -18,7 +18,8 @@ using CommandOf = std::function<std::string(const Sampling& sampling, const Fram
 struct ErrorDesc {
     GridAxes axes; // completed()
     bool quick = false;
-    int frames = 5; // of a row, at most
+    int frames = 5;            // of a row, at most
+    bool verification = false; // refinement and the worst ray, too
     CommandOf commandOf;
 };
 
@@ -27,10 +28,11 @@ inline constexpr const char* kErrorPictures = "pictures";
 
 /// How far the pictures of every row of the grid are from the continuous model, split into what
 /// sampling, the transfer function's table and the GPU add, and what they take. Writes error.json,
-/// error.csv and pictures, and keeps what is finished in the folder's ErrorStore as it goes. Gives
-/// what it measured, for an error table. Contract: StageDesc::keepValues, a transparent background
-/// and frames >= kFewestFrames. Fails: InvalidArgument (no classification can be had), as the
-/// stage and the folder. Tested by: cli_error_test.py
+/// error.csv, pictures and what addVerification() writes, and keeps what is finished in the
+/// folder's ErrorStore as it goes. Gives what it measured, for an error table. Contract:
+/// StageDesc::keepValues, a transparent background and frames >= kFewestFrames. Fails:
+/// InvalidArgument (no classification can be had), as the stage and the folder. Tested by:
+/// cli_error_test.py
 Result<std::vector<MeasuredError>> measureErrors(Stage& stage, const ErrorDesc& desc,
                                                  const RunInfo& run, ReportFolder& folder);
 

@@ -4,7 +4,9 @@
 #include <optional>
 #include <utility>
 
+#include "core/reference/flip.h"
 #include "perf/error/reference_pictures.h"
+#include "perf/error/worst_ray.h"
 
 namespace slabcast {
 
@@ -31,7 +33,8 @@ public:
     ErrorRows(Stage& stage, const ErrorDesc& desc, ErrorStore& store, ReportFolder& folder,
               Json& leftOut)
         : stage_(stage), desc_(desc), store_(store), folder_(folder), leftOut_(leftOut),
-          reference_(store.reference()->pixels), progress_(stage.watcher()) {}
+          reference_(store.reference()->pixels), progress_(stage.watcher()),
+          referenceSeen_(seen(reference_)) {}
 
     Result<Json> measure(const std::vector<Sampling>& grid);
 
@@ -50,6 +53,8 @@ private:
     const Sampled& sampledFor(const FramePlan& plan);
     Result<FrameTimes> time(const FramePlan& plan);
     Json countersOf(const FramePlan& plan);
+    FlipPicture seen(const std::vector<glm::dvec4>& picture) const;
+    Json flipOf(const std::vector<glm::dvec4>& picture) const;
     Result<Json> savePictures(const std::string& id, const std::vector<glm::dvec4>& picture);
 
     Stage& stage_;
@@ -59,6 +64,7 @@ private:
     Json& leftOut_;
     const std::vector<glm::dvec4>& reference_;
     ProgressLine progress_;
+    FlipPicture referenceSeen_;
     std::optional<Sampled> sampled_;
     std::vector<std::pair<FramePlan, Json>> counted_; // work does not depend on the target
 };
@@ -144,6 +150,8 @@ Result<Json> ErrorRows::measureRow(const Sampling& sampling, const FramePlan& pl
                 {"ratio", ratioName(plan)},
                 {"plan", planJson(plan)},
                 {"error", std::move(error)},
+                {"flip", flipOf(*picture)},
+                {"worst_pixel", worstPixel(*picture, reference_, stage_.desc().size)},
                 {"frame_ms", toJson(*times)},
                 {"counters", countersOf(plan)},
                 {"command", desc_.commandOf ? desc_.commandOf(sampling, plan, id + ".png") : ""},
@@ -164,6 +172,21 @@ const ErrorRows::Sampled& ErrorRows::sampledFor(const FramePlan& plan) {
         sampled_->table = toJson(difference(sampled_->withTable, continuous, plan.space));
     }
     return *sampled_;
+}
+
+FlipPicture ErrorRows::seen(const std::vector<glm::dvec4>& picture) const {
+    return flipPicture(picture, stage_.desc().size, stage_.scene().provided()->space);
+}
+
+Json ErrorRows::flipOf(const std::vector<glm::dvec4>& picture) const {
+    const std::vector<double> pixels = flip(seen(picture), referenceSeen_);
+    double sum = 0.0;
+    for (const double pixel : pixels) {
+        sum += pixel;
+    }
+    return {{"mean", sum / static_cast<double>(pixels.size())},
+            {"max", *std::max_element(pixels.begin(), pixels.end())},
+            {"pixels_per_degree", kPixelsPerDegree}};
 }
 
 Result<FrameTimes> ErrorRows::time(const FramePlan& plan) {

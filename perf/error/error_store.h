@@ -1,13 +1,13 @@
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/glm.hpp>
 
-#include "perf/json.h"
-#include "perf/report_folder.h"
+#include "perf/run_store.h"
 
 namespace slabcast {
 
@@ -17,23 +17,18 @@ struct StoredReference {
     double seconds = 0.0;
 };
 
-/// What a measurement of errors has finished, kept in its folder so that one cut short can go on:
-/// `rows.jsonl` (a key, then a row per line) and `reference.f64` (a key, then raw doubles). Keys
-/// are JSON objects of all that the content depends on, `commit` and the reference's `size` among
-/// it; of other keys nothing is taken, and nothing where the commit is of changed sources. Tested
-/// by: error_store_test.cpp
+/// What a measurement of errors has finished: rows in a RunStore, each complete as the page needs
+/// it, and the reference in `reference.f64` (a key, then raw doubles) beside. The reference's key
+/// is all that it depends on, its `size` among it; of another key none is taken, and none where the
+/// run starts anew. Tested by: error_store_test.cpp
 class ErrorStore {
 public:
-    /// Never fails: what cannot be read is not there, and rows that are damaged start anew. `notes`
-    /// receives lines for people. Borrows the folder.
-    static ErrorStore open(ReportFolder& folder, const Json& referenceKey, const Json& rowsKey,
-                           std::vector<std::string>& notes);
-    ErrorStore(ErrorStore&&) noexcept;
-    ErrorStore& operator=(ErrorStore&&) noexcept;
-    ~ErrorStore();
+    /// Borrows the folder. Fails: as RunStore::open().
+    static Result<ErrorStore> open(ReportFolder& folder, RunIdentity run, Json referenceKey,
+                                   const Watcher& watcher);
 
     /// Null where there is none.
-    const StoredReference* reference() const;
+    const StoredReference* reference() const { return reference_ ? &*reference_ : nullptr; }
     /// Fails: as the folder.
     Result<void> setReference(StoredReference reference);
 
@@ -43,9 +38,14 @@ public:
     Result<void> add(Json row);
 
 private:
-    struct State;
-    explicit ErrorStore(std::unique_ptr<State> state);
-    std::unique_ptr<State> state_;
+    ErrorStore(ReportFolder& folder, Json referenceKey, RunStore rows)
+        : folder_(&folder), referenceKey_(std::move(referenceKey)), rows_(std::move(rows)) {}
+    void readReference();
+
+    ReportFolder* folder_;
+    Json referenceKey_;
+    RunStore rows_;
+    std::optional<StoredReference> reference_;
 };
 
 } // namespace slabcast

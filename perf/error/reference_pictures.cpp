@@ -137,11 +137,23 @@ AmplifiedDifference amplified(const std::vector<glm::dvec4>& picture,
 }
 
 Json toJson(const PictureDifference& d) {
-    return {{"rmse", d.rmse},
-            {"psnr", std::isfinite(d.psnr) ? Json(d.psnr) : Json()},
-            {"max", d.max},
-            {"mean_delta_e", d.meanDeltaE},
-            {"p999_delta_e", d.p999DeltaE}};
+    Json all = {{"rmse", d.rmse},
+                {"psnr", std::isfinite(d.psnr) ? Json(d.psnr) : Json()},
+                {"max", d.max},
+                {"mean_delta_e", d.meanDeltaE},
+                {"p999_delta_e", d.p999DeltaE},
+                {"bias", d.bias},
+                {"deviation", d.deviation},
+                {"visible_share", d.visibleShare},
+                {"alpha_visible_share", d.visibleAlphaShare},
+                {"alpha_rmse", d.channels[3].rmse},
+                {"alpha_max", d.channels[3].max}};
+    constexpr const char* kChannels[] = {"red", "green", "blue", "alpha"};
+    for (std::size_t k = 0; k < d.channels.size(); ++k) {
+        all[std::string(kChannels[k]) + "_bias"] = d.channels[k].bias;
+        all[std::string(kChannels[k]) + "_deviation"] = d.channels[k].deviation;
+    }
+    return all;
 }
 
 } // namespace slabcast

@@ -37,6 +37,7 @@ struct AmplifiedDifference {
 AmplifiedDifference amplified(const std::vector<glm::dvec4>& picture,
                               const std::vector<glm::dvec4>& reference, glm::ivec2 size);
 
+/// Keys are those of PictureDifference's members, with the channel's name before its own.
 Json toJson(const PictureDifference& difference);
 
 } // namespace slabcast

@@ -58,7 +58,6 @@ Result<CostPicture> drawCosts(Stage& stage, const FramePlan& plan, HeatmapQuanti
 
 std::string frameReport(Stage& stage, const FramePlan& plan, const Settings& settings,
                         const FrameFindings& findings, const RunInfo& run) {
-    const GpuMemory gpu = stage.renderer().gpuMemory();
     Json skip = toJson(stage.scene().skip());
     if (!skip.isNull()) {
         skip["skips"] = plan.skip != SkipStructure::None; // what the plan has a use for
@@ -74,11 +73,7 @@ std::string frameReport(Stage& stage, const FramePlan& plan, const Settings& set
                    {"counters", toJson(stage.countWork(plan))},
                    {"compile_ms", stage.renderer().compileMs(plan.variant)},
                    {"quantisation_error", stage.scene().texels().maxQuantisationError},
-                   {"memory",
-                    {{"host_peak_bytes", run.peakHostBytes ? run.peakHostBytes() : 0},
-                     {"gpu_volume_bytes", gpu.volumeBytes},
-                     {"gpu_skip_bytes", gpu.skipBytes},
-                     {"gpu_other_bytes", gpu.otherBytes}}}};
+                   {"memory", memoryOf(stage.renderer(), run)}};
     if (findings.error) {
         report["error"] = toJson(*findings.error);
     }

@@ -48,7 +48,14 @@ class Edit:
 
     @property
     def budget(self):
+        """What was given for all frames, ms; None where each has its own."""
         return number(self.section("summary").get("budget_ms"))
+
+    @property
+    def budgets(self):
+        """Each frame's, ms; empty where that is not known."""
+        budgets = [number(frame.raw.get("budget_ms")) for frame in self.frames]
+        return [] if None in budgets else budgets
 
     @property
     def compared(self):
@@ -87,7 +94,7 @@ def _frame(raw, where):
             raise BadInput(f"{where}: {name} is no time; {AGAIN}")
     if times["octree_ms"] == 0:
         raise BadInput(f"{where}: octree_ms is 0; {AGAIN}")
-    return Frame(raw, str(raw.get("step", "")), raw.get("edit") is True, str(raw.get("structure", "unknown")),
+    return Frame(raw, str(raw.get("step", "")), raw.get("edit") is True, str(raw.get("skip", "unknown")),
                  raw.get("progress") == "swapped", times)
 
 

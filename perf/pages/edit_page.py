@@ -64,7 +64,7 @@ def head(edit):
         found.append(card("From an edit to its picture", MISSING, "not compared: --verify does"))
     over = number(summary.get("frames_over_budget"))
     found.append(card("Frames over the budget", figures(over),
-                      f"of {len(edit.frames)}; {figures(edit.budget)} ms; rebuilding all at once: "
+                      f"of {len(edit.frames)}; {budget_of(edit)}; rebuilding all at once: "
                       f"{figures(of_summary(edit, 'naive', 'frames_over_budget'))}", "skips" if over == 0 else ""))
     line = ", ".join(filter(None, (esc(volume.get("name", "volume")), by(volume.get("dims", [])),
                                    plural(len(edit.edits), "edit"), esc(device.get("renderer", "unknown device")))))
@@ -77,17 +77,21 @@ def short_ms(value):
 
 
 def work(edit):
-    drawn = figure(plots.fetches, edit, "Texels that the live policy's frames look at: what they cost whatever the "
-                   "machine. Counted beside the timed frames.")
-    return drawn and plots.key_of_fetches() + drawn
+    return figure(plots.fetches, edit, "Texels that the live policy's frames look at: what they cost whatever the "
+                  "machine. Counted beside the timed frames.")
+
+
+def budget_of(edit):
+    """As "1.5 times the frame by the bitfield octree of the same view and transfer function" """
+    if edit.budget is not None:
+        return f"{figures(edit.budget)} ms, as asked for"
+    over = of_summary(edit, "budget_over_octree")
+    return (f"{figures(over)} times the frame by {the(edit)} of the same view and transfer function"
+            if over is not None else "budget not known")
 
 
 def budget_words(edit):
-    if not edit.budget:
-        return ""
-    given = edit.section("summary").get("budget_given") is True
-    why = "as asked for" if given else f"{GOAL} times the median frame by {the(edit)}"
-    return f" The dashed line is the budget: {figures(edit.budget)} ms, {why}."
+    return f" The dashed line is the budget: {budget_of(edit)}." if edit.budgets else ""
 
 
 def compared(edit):
@@ -126,7 +130,7 @@ def builds(edit):
                                   ("faster under one of them", part(made, "settled"), "last_ms",
                                    "in pieces, when edits pause")):
         if entry:
-            rows.append([name, esc(entry.get("structure", "")), figures(entry.get("block_edge")),
+            rows.append([name, esc(entry.get("structure", "")), figures(entry.get("skip_block")),
                          figures(entry.get(ms)), mebibytes(entry.get("gpu_bytes")) or MISSING, when])
     if number(made.get("naive_ms")) is not None:
         rows.append(["naive", esc(part(made, "settled").get("structure", "proximity")), MISSING,
@@ -142,7 +146,7 @@ def run_facts(edit):
         *device_facts(edit.raw),
         ("Picture", by(conditions.get("size", []))),
         ("Ratio", f"{conditions.get('planes')} × {conditions.get('layers_per_plane')}"),
-        ("Classification", esc(conditions.get("classification", ""))),
+        ("Classification", esc(conditions.get("classify", ""))),
         ("Edits", CHANGED.get(conditions.get("edits"), "")),
         ("Rebuilding", f"{figures(conditions.get('work_budget_ms'))} ms a frame, after "
                        f"{figures(conditions.get('quiet_frames'))} frames without an edit"),
@@ -156,11 +160,10 @@ def run_facts(edit):
 
 def page(edit):
     sections = [
-        section("Every frame", plots.key_of_trace(edit) + figure(
+        section("Every frame", figure(
             plots.trace, edit, "Time from the edit, where there is one, to the end of drawing." + budget_words(edit)
-            + " The band below tells what skipped empty space in each frame; marks below it are edits.")
-            + plots.key_of_band(edit)),
-        section("Beside drawing", plots.key_of_parts() + figure(
+            + " The band below tells what skipped empty space in each frame; marks below it are edits.")),
+        section("Beside drawing", figure(
             plots.parts, edit, "What the live policy adds to each frame: the table and what it shows, pieces of "
             "rebuilding, plan and uploads.")),
         section("Work", work(edit)),

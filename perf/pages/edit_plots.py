@@ -3,7 +3,7 @@
 from matplotlib.transforms import blended_transform_factory
 
 from edit_data import PARTS
-from page_svg import INK, MUTED, NARROW, WIDE, key, plain_log_ticks, plt, svg
+from page_svg import INK, MUTED, NARROW, WIDE, plain_log_ticks, plt, svg
 
 LIVE, NAIVE, COMPARED, BUDGET = INK, "#c8643a", "#8fb0cc", "#b02a1e"
 FETCHES = {"volume_fetches": ("of voxels", INK), "skip_fetches": ("of the skip structure", "#1d5a91")}
@@ -22,14 +22,10 @@ def structure_hue(name):
 def key_of_trace(edit):
     lines = [("live policy", LIVE, None, False, ""), ("naive: all rebuilt at every edit", NAIVE, None, False, ""),
              (f"{edit.compared}, made beforehand", COMPARED, None, False, "")]
-    if edit.budget:
+    if edit.budgets:
         lines.append(("budget", BUDGET, None, False, "4 2"))
-    return key(lines)
-
-
-def key_of_band(edit):
-    return key([*((f"skipping: {name}", structure_hue(name), "s", False, None) for name in edit.structures),
-                ("edit", INK, "^", False, None)])
+    return lines + [*((f"skipping: {name}", structure_hue(name), "s", False, None) for name in edit.structures),
+                    ("edit", INK, "^", False, None)]
 
 
 def _steps_above(edit, axes, narrow):
@@ -70,25 +66,21 @@ def trace(edit, narrow):
     draw("naive_ms", color=NAIVE, lw=1.0, alpha=0.85, zorder=2)
     draw("octree_ms", color=COMPARED, lw=2.6, zorder=3, alpha=0.9)
     draw("frame_ms", color=LIVE, lw=1.2, zorder=4)
-    if edit.budget:
-        axes.axhline(edit.budget, color=BUDGET, lw=1.1, dashes=(4, 2), zorder=5)
+    if edit.budgets:
+        axes.plot(numbers, edit.budgets, drawstyle="steps-mid", color=BUDGET, lw=1.1, dashes=(4, 2), zorder=5)
     most = max(max(frame.frame_ms, frame.naive_ms) for frame in edit.frames)
     least = min(frame.frame_ms for frame in edit.frames)
     if most > WIDE_SPREAD * least:
         axes.set_yscale("log")
         plain_log_ticks(axes.yaxis)
     else:
-        axes.set_ylim(0, 1.06 * max(most, edit.budget or 0))
+        axes.set_ylim(0, 1.06 * max(most, *(edit.budgets or [0])))
     axes.set_xlim(0, len(edit.frames))
     axes.set_ylabel("frame, ms")
     axes.tick_params(axis="x", length=0)
     _steps_above(edit, axes, narrow)
     _band(edit, band)
-    return svg(figure, f"trace{'-n' if narrow else ''}")
-
-
-def key_of_parts():
-    return key([(PARTS[name], hue, "s", False, None) for name, hue in PART_HUES.items()])
+    return svg(figure, f"trace{'-n' if narrow else ''}", key_of_trace(edit))
 
 
 def parts(edit, narrow):
@@ -104,11 +96,8 @@ def parts(edit, narrow):
     axes.set_xlabel("frame")
     axes.set_ylabel("beside drawing, ms")
     _steps_above(edit, axes, narrow)
-    return svg(figure, f"parts{'-n' if narrow else ''}")
-
-
-def key_of_fetches():
-    return key([(name, hue, None, False, "") for name, hue in FETCHES.values()])
+    return svg(figure, f"parts{'-n' if narrow else ''}",
+               [(PARTS[name], hue, "s", False, None) for name, hue in PART_HUES.items()])
 
 
 def fetches(edit, narrow):
@@ -124,4 +113,5 @@ def fetches(edit, narrow):
     axes.set_xlabel("frame")
     axes.set_ylabel("fetches, millions")
     _steps_above(edit, axes, narrow)
-    return svg(figure, f"fetches{'-n' if narrow else ''}")
+    return svg(figure, f"fetches{'-n' if narrow else ''}",
+               [(name, hue, None, False, "") for name, hue in FETCHES.values()])

@@ -1,6 +1,7 @@
 """Error against run time as one self-contained HTML page."""
 
 import error_plots as plots
+import error_verification as verification
 from error_data import NAMES, PARTS, say
 from page_html import (MISSING, by, card, cards, command, device_facts, document, esc, facts, figure, figures, image,
                        masthead, mebibytes, millions, on_off, plural, scientific, section, table)
@@ -157,18 +158,11 @@ def work_precision(errors):
                      "the fastest to the slowest frame. The staircase is the Pareto front.")
     by_fetches = figure(plots.by_fetches, errors, "The same over the texture fetches of a frame, which depend on the "
                         "picture and not on the device’s speed.")
-    legend = plots.key_of_rows(errors, front=True)
-    first = section("Error over frame time", by_time and legend + by_time
+    first = section("Error over frame time", by_time and by_time
                     + _front_list(errors, errors.front, plots.rank_by_time) + budget_table(errors))
-    second = section("Error over fetches", by_fetches and legend + by_fetches
+    second = section("Error over fetches", by_fetches and by_fetches
                      + _front_list(errors, errors.front_by_fetches, plots.rank_by_fetches))
     return first + "\n" + second
-
-
-def keyed(draw, errors, legend, caption):
-    """A figure under its legend; nothing where there is nothing to draw."""
-    drawn = figure(draw, errors, caption)
-    return drawn and legend + drawn
 
 
 def _setting_of(rows):
@@ -251,15 +245,14 @@ def all_rows(errors):
 def page(errors):
     sections = [
         work_precision(errors),
-        section("Convergence", keyed(
-            plots.convergence, errors, plots.key_of_parts(),
+        section("Convergence", figure(
+            plots.convergence, errors,
             "The error and its three parts over layers per voxel, for one family of settings of each classification. "
             "Grey lines fall as an error of order 1 and of order 2 would. Parts that are exactly zero or were not "
             "measured are not drawn.")),
-        section("Where RGBA8 blending breaks", keyed(
-            plots.by_planes, errors, plots.key_of_rows(errors, lines=True), planes_caption(errors))),
-        section("What jitter costs and gains", keyed(
-            plots.jitter, errors, plots.key_of_rows(errors), _jitter_words(errors))),
+        *verification.sections(errors),
+        section("Where RGBA8 blending breaks", figure(plots.by_planes, errors, planes_caption(errors))),
+        section("What jitter costs and gains", figure(plots.jitter, errors, _jitter_words(errors))),
         section("Pictures of the front", pictures(errors)),
         section("This run", run_facts(errors)),
         section("Every row", all_rows(errors)),

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator, NullLocator
 
 from error_data import FAMILY, NAMES, PARTS, say
-from page_svg import INK, MUTED, NARROW, PAPER_WHITE, WIDE, key, plain_log_ticks, plain_number, plt, svg
+from page_svg import INK, MUTED, NARROW, PAPER_WHITE, WIDE, plain_log_ticks, plain_number, plt, svg
 
 # Three hues that stay apart for colour-blind eyes and in grey; then others, should there be more.
 HUES = ("#1d5a91", "#b5485a", "#d9a02b", "#5b8c5a", "#7a5aa8")
@@ -133,7 +133,7 @@ def _work_precision(errors, narrow, front, cost, spread, letter, label, name):
                   zorder=3.5)
         _label_front(figure, axes, [(cost(row), spread(row)[0], row.rmse, text) for row, text in
                                     zip(front, _front_names(errors, front, letter, narrow))])
-    return svg(figure, f"{name}{'-n' if narrow else ''}")
+    return svg(figure, f"{name}{'-n' if narrow else ''}", key_of_rows(errors, front=True))
 
 
 def _psnr(rmse):
@@ -202,7 +202,7 @@ def convergence(errors, narrow):
         axes.set_xticks(spacings, [f"{x:g}" for x in spacings])
     figure.supxlabel("layers per voxel", fontsize=9)
     figure.supylabel(RMSE, fontsize=9)
-    return svg(figure, f"convergence{'-n' if narrow else ''}")
+    return svg(figure, f"convergence{'-n' if narrow else ''}", key_of_parts())
 
 
 def target_groups(errors):
@@ -242,7 +242,7 @@ def by_planes(errors, narrow):
         if not narrow or axes is grid[-1]:
             axes.set_xlabel("planes")
     figure.supylabel(RMSE, fontsize=9)
-    return svg(figure, f"planes{'-n' if narrow else ''}")
+    return svg(figure, f"planes{'-n' if narrow else ''}", key_of_rows(errors, lines=True))
 
 
 def jitter(errors, narrow):
@@ -266,11 +266,11 @@ def jitter(errors, narrow):
         axes.set(xlim=ends, ylim=ends, box_aspect=1, xlabel="without jitter", ylabel="with jitter")
         axes.plot(ends, ends, color=MUTED, lw=0.9, zorder=1)
         axes.set_title(title)
-    return svg(figure, f"jitter{'-n' if narrow else ''}")
+    return svg(figure, f"jitter{'-n' if narrow else ''}", key_of_rows(errors))
 
 
 def key_of_rows(errors, ratios=True, front=False, lines=False):
-    """The legend of all plots that have a point per row."""
+    """Entries of the legend of all plots that have a point per row."""
     solid, dashed = ("" if lines else None), ("4 2" if lines else None)
     entries = [(NAMES.get(name, name), hue(errors, name), "o", False, solid) for name in errors.classifications]
     shown = [ratio for ratio in SHAPES if ratios and any(row.ratio == ratio for row in errors.rows)]
@@ -279,7 +279,7 @@ def key_of_rows(errors, ratios=True, front=False, lines=False):
         entries += [("filled: RGBA16F", MUTED, "o", False, solid), ("hollow: RGBA8", MUTED, "o", True, dashed)]
     if front:
         entries.append(("front: nothing is both cheaper and more accurate", INK, None, False, ""))
-    return key(entries)
+    return entries
 
 
 def key_of_parts():
@@ -287,5 +287,5 @@ def key_of_parts():
              "gpu": "GPU: texel format, filter, float32, termination, blending"}
     entries = [(texts.get(part, part), colour, marker, False, " ".join(f"{d:g}" for d in dashes))
                for part, (colour, dashes, marker, _) in PART_STYLES.items()]
-    return key(entries + [(f"slope of order {order}", MUTED, None, False, " ".join(f"{d:g}" for d in dashes))
-                          for order, dashes in SLOPES.items()])
+    return entries + [(f"slope of order {order}", MUTED, None, False, " ".join(f"{d:g}" for d in dashes))
+                      for order, dashes in SLOPES.items()]

@@ -34,6 +34,21 @@ def times(value):
     return MISSING if value is None else f"{value:.2f}×"
 
 
+def interval(low, high, digits=2):
+    """Of a ratio: "2.80 – 3.05"; nothing where it is not known."""
+    return "" if low is None or high is None else f"{low:.{digits}f} – {high:.{digits}f}"
+
+
+INTERVAL_WORDS = ("between two order statistics of the rounds’ ratios, the narrowest pair that covers the median with at "
+                  "least 95 % whatever the distribution; of fewer than 6 rounds from the least to the greatest")
+
+
+def coverage_words(coverage):
+    """What an interval is, and how sure."""
+    known = number(coverage)
+    return f"Intervals are {INTERVAL_WORDS}" + (f": here {100 * known:.1f} %." if known is not None else ".")
+
+
 def mebibytes(value):
     value = number(value)
     return None if value is None else f"{figures(value / 2**20)} MiB"
@@ -104,7 +119,8 @@ def figure(draw, measured, caption):
     if wide is None:
         return ""
     return (f'<figure><div class="wide">{wide}</div><div class="narrow">{narrow}</div>'
-            f"<figcaption>{caption}</figcaption></figure>")
+            f"<figcaption>{caption} <span>Files: <code>figures/{esc(wide.name)}.svg</code>, <code>.pdf</code>; for a "
+            f"column: <code>figures/{esc(narrow.name)}.svg</code>.</span></figcaption></figure>")
 
 
 def image(data, alt):

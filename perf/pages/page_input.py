@@ -39,6 +39,9 @@ def read(folder, name, rows, subcommand):
     for i, row in enumerate(raw[rows]):
         if not isinstance(row, dict):
             raise BadInput(f"{path}: {rows}[{i}] is no object; {again}")
+    conditions = section(raw, "conditions")
+    if conditions:  # settings are conditions, too
+        raw["conditions"] = {**section(conditions, "settings"), **conditions}
     return path, raw
 
 

@@ -10,12 +10,12 @@ from pathlib import Path
 from page_input import BadInput
 
 
-def write_whole(path, text):
-    """All of the file or nothing of it: a reader never meets half a page."""
+def write_whole(path, content):
+    """All of the file or nothing of it: a reader never meets half a page. `content`: text or bytes."""
     handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
+        with os.fdopen(handle, "wb") as file:
+            file.write(content.encode() if isinstance(content, str) else content)
         os.chmod(temporary, 0o644)
         os.replace(temporary, path)
     except BaseException:
@@ -24,7 +24,8 @@ def write_whole(path, text):
 
 
 def main(usage, arguments, load, page_module):
-    """Writes DIR/report.html with `page(load(DIR))` of the module and prints its path. The exit status."""
+    """Writes DIR/report.html with `page(load(DIR))` of the module, and its figures as files in DIR/figures before;
+    prints the page's path. The exit status."""
     if len(arguments) != 1 or arguments[0].startswith("-"):
         print(usage.strip(), file=sys.stderr)
         return 2
@@ -34,7 +35,11 @@ def main(usage, arguments, load, page_module):
     try:
         measured = load(folder)
         # matplotlib loads slowly: not before the input is known to be good
-        write_whole(folder / "report.html", import_module(page_module).page(measured))
+        text = import_module(page_module).page(measured)
+        (folder / "figures").mkdir(exist_ok=True)
+        for name, content in import_module("page_svg").FILES.items():
+            write_whole(folder / "figures" / name, content)
+        write_whole(folder / "report.html", text)
     except BadInput as error:
         print(f"{program}: {error}", file=sys.stderr)
         return 1

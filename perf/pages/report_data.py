@@ -7,7 +7,7 @@ import page_input
 from page_input import BadInput, number
 
 # What may tell two rows of one ratio apart, in the order in which labels name it.
-SERIES_KEYS = ("skip", "form", "tighten", "lattice", "classification", "termination")
+SERIES_KEYS = ("skip", "form", "tighten", "lattice", "classify", "termination")
 COUNTERS = {
     "fragments": "fragments",
     "layers_evaluated": "layers evaluated",
@@ -43,6 +43,19 @@ class Row:
     def counter(self, name):
         return number((self.raw.get("counters") or {}).get(name))
 
+    def speed_up(self, over):
+        """How many times as fast as `over` ("slicing" of the same series, "plain", "plain_slicing"); None where that
+        was not measured."""
+        return number(self.raw.get(f"speedup_over_{over}"))
+
+    def interval(self, over):
+        """(low, high) of that; None each where not known."""
+        return tuple(number(self.raw.get(f"speedup_over_{over}_{end}")) for end in ("low", "high"))
+
+    @property
+    def coverage(self):
+        return number(self.raw.get("speedup_coverage"))
+
 
 @dataclass
 class Series:
@@ -58,10 +71,6 @@ class Series:
     @property
     def best(self):
         return min(self.rows, key=lambda row: row.median_ms)
-
-    def speed_up(self, row):
-        """How many times faster than slicing in this series; None where slicing was not measured."""
-        return self.slicing.median_ms / row.median_ms if self.slicing else None
 
 
 @dataclass

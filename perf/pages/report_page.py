@@ -1,9 +1,9 @@
 """The report as one self-contained HTML page."""
 
 import report_plots as plots
-from page_html import (MISSING, by, card, cards, command, device_facts, document, esc, facts, figure, figures, image,
-                       masthead, mebibytes, millions, on_off, section, table, times)
-from page_input import picture
+from page_html import (MISSING, by, card, cards, command, coverage_words, device_facts, document, esc, facts, figure,
+                       figures, image, interval, masthead, mebibytes, millions, on_off, section, table, times)
+from page_input import picture, section as part
 from report_data import PAPER_FIGURES, number
 
 
@@ -19,8 +19,9 @@ def findings(sweep):
     found = []
     for series in sweep.series:
         best = series.best
-        gain = series.speed_up(best)
-        against = f"{times(gain)} the speed of slicing" if gain else "slicing was not measured"
+        gain = best.speed_up("slicing")
+        against = (f"{times(gain)} ({interval(*best.interval('slicing'))}) the speed of slicing" if gain else
+                   "slicing was not measured")
         found.append(card(f"{esc(series.label)}: best at", best.label, f"{figures(best.median_ms)} ms; {against}",
                           "skips" if series.skips else ""))
     return cards(found)
@@ -30,7 +31,7 @@ def run_facts(sweep):
     conditions, volume = sweep.section("conditions"), sweep.section("volume")
     size = by(conditions.get("size", []))
     spacing = " × ".join(figures(s) for s in volume.get("spacing_mm", []))
-    settings = " · ".join(esc(conditions[key]) for key in ("classification", "space", "target", "lattice")
+    settings = " · ".join(esc(conditions[key]) for key in ("classify", "space", "target", "lattice")
                           if conditions.get(key))
     termination, shade = conditions.get("termination"), conditions.get("shade")
     layers = conditions.get("total_layers")
@@ -41,10 +42,11 @@ def run_facts(sweep):
         ("Volume", " · ".join(part for part in (esc(volume.get("type", "")), f"{spacing} mm" if spacing else "") if part)),
         ("Picture", f"{size}{f', {views} views' if number(views) and views > 1 else ''}" if size else None),
         ("Settings", settings),
-        ("Shading, termination", f"{esc(shade)}, {esc(termination)}" if shade or termination else None),
+        ("Shading, termination", f"{esc(shade or 'off')}, {esc(termination or 'off')}" if size else None),
         ("Layers", f"{layers} in total{f', {figures(step)} mm apart' if step else ''}" if layers else None),
         ("Tight polygons", on_off(conditions.get("tighten"))),
-        ("Frames per row", conditions.get("frames_per_row")),
+        ("Rounds", f"{conditions.get('rounds')}, in each a frame of every row, in an order shuffled anew"
+         if conditions.get("rounds") else None),
     ]) + command(sweep.raw)
 
 
@@ -68,7 +70,7 @@ def paper_table(sweep):
         cells = [times(fps / base if fps else None) + (f" <i>({fps:g} fps)</i>" if fps else "")
                  for fps, base in zip(paper, slicing)]
         for series, row in _measured_at(sweep, kind):
-            cells.append(f"{times(series.speed_up(row))} <i>({row.label})</i>" if row else MISSING)
+            cells.append(f"{times(row.speed_up('slicing'))} <i>({row.label})</i>" if row else MISSING)
         rows.append([kind.capitalize(), *cells])
     head = ["Speed, slicing = 1", "paper’s phone, no skipping", "paper’s phone, skipping",
             *(f"this run, {esc(series.label)}" for series in sweep.series)]
@@ -82,40 +84,50 @@ def paper_table(sweep):
 
 def against_plain_slicing(sweep):
     """Best hybrid and best ray casting of all series, as multiples of slicing without skipping and with full polygons."""
-    plain = next((row for row in sweep.rows if row.layers == 1 and row.raw.get("skip") in (None, "none")
-                  and not row.raw.get("tighten")), None)
     kinds = {"hybrid": [row for row in sweep.rows if row.planes > 1 and row.layers > 1],
              "ray casting": [row for row in sweep.rows if row.planes == 1]}
     return [(f"Best {kind} against plain slicing",
-             f"{best.label}: {times(plain.median_ms / best.median_ms)}")
-            for kind, rows in kinds.items() if plain and rows
-            for best in [min(rows, key=lambda row: row.median_ms)]]
+             f"{best.label}: {times(best.speed_up('plain_slicing'))} ({interval(*best.interval('plain_slicing'))})")
+            for kind, rows in kinds.items() if rows
+            for best in [min(rows, key=lambda row: row.median_ms)] if best.speed_up("plain_slicing")]
 
 
 def memory_and_speed(sweep):
-    memory, build, volume = (sweep.section(n) for n in ("memory", "skip_build", "volume"))
+    memory, build, volume = (sweep.section(n) for n in ("memory", "skip", "volume"))
+    block = part(build, "parameters").get("skip_block", "?")
     occupied = number(build.get("occupied_fraction"))
     pairs = [
-        ("Peak host memory", mebibytes(memory.get("peak_host_bytes"))),
-        ("Volume in memory", mebibytes(memory.get("volume_bytes", volume.get("bytes")))),
-        ("Textures", mebibytes(memory.get("texture_bytes"))),
-        ("Skip structure in memory", mebibytes(memory.get("skip_bytes"))),
-        ("Skip structure built in", f"{figures(build['ms'])} ms" if number(build.get("ms")) is not None else None),
-        ("Skip structure", f"{esc(build['structure'])}, blocks of {esc(build.get('block_edge', '?'))}³ voxels"
+        ("Peak host memory", mebibytes(memory.get("host_peak_bytes"))),
+        ("Volume in memory", mebibytes(volume.get("bytes"))),
+        ("Its texture", mebibytes(memory.get("gpu_volume_bytes"))),
+        ("Skip structure in memory", mebibytes(build.get("gpu_bytes"))),
+        ("Skip structure built in", f"{figures(build['build_ms'])} ms" if number(build.get("build_ms")) is not None else None),
+        ("Skip structure", f"{esc(build['structure'])}, blocks of {esc(block)}³ voxels"
          if build.get("structure") else None),
         ("Blocks not free", f"{100 * occupied:.1f} %" if occupied is not None else None),
     ]
     for series in sweep.series:
-        if series.slicing:
-            best = series.best
-            pairs.append((f"Best, {series.label}",
-                          f"{best.label}: {times(series.speed_up(best))} slicing, {figures(best.fps)} fps"))
+        best = series.best
+        if best.speed_up("slicing"):
+            pairs.append((f"Best, {series.label}", f"{best.label}: {times(best.speed_up('slicing'))} slicing "
+                          f"({interval(*best.interval('slicing'))}), {figures(best.fps)} fps"))
     return facts(pairs + against_plain_slicing(sweep))
+
+
+def _ratio(row, over):
+    value = row.speed_up(over)
+    return f"{times(value)}<br><i>{interval(*row.interval(over))}</i>" if value else MISSING
+
+
+def paired_words(sweep):
+    """What a ratio is, and its interval."""
+    return ("A ratio is the median over the rounds of one row’s time over the other’s of the same round, so that a "
+            "drifting machine hits both. " + coverage_words(next((row.coverage for row in sweep.rows), None)))
 
 
 def all_rows(sweep):
     head = ["planes × layers", "skipping", "form", "tight", "median ms", "min – max", "p10 – p90", "n", "fps",
-            "fragments", "layers", "skipped", "volume fetches", "skip fetches", "compile ms", "variant"]
+            "× slicing", "× the same drawn plainly", "fragments", "layers", "skipped", "volume fetches", "skip fetches", "compile ms", "first frame ms", "variant"]
     lines = []
     for series in sweep.series:
         for row in series.rows:
@@ -125,9 +137,10 @@ def all_rows(sweep):
                 on_off(raw.get("tighten")) or MISSING, f"<b>{figures(row.median_ms)}</b>",
                 f"{figures(row.low_ms)} – {figures(row.high_ms)}",
                 f"{figures(ms.get('p10'))} – {figures(ms.get('p90'))}", figures(ms.get("n")), figures(row.fps),
+                *(_ratio(row, over) for over in ("slicing", "plain")),
                 *(millions(row.counter(name)) for name in plots.COUNTERS),
-                figures(raw.get("compile_ms")), f"<code>{esc(raw.get('variant', MISSING))}</code>"])
-    return table(head, lines, css="rows") + '<p class="note">Counters are millions per frame.</p>'
+                figures(raw.get("compile_ms")), figures(raw.get("first_frame_ms")), f"<code>{esc(raw.get('variant', MISSING))}</code>"])
+    return table(head, lines, css="rows") + f'<p class="note">Counters are millions per frame. {paired_words(sweep)} Percentiles need 9 rounds.</p>'
 
 
 def _pictures(sweep, ratio):
@@ -173,13 +186,14 @@ def page(sweep):
             plots.frame_times, sweep, "The core paper’s Fig. 4 for this device: median frame time, with whiskers from the "
             "fastest to the slowest frame." + (" Hollow points use the loop form of the shader." if loops else ""))),
         section("Beside the paper", figure(
-            plots.speed_ups, sweep, "The same medians as speed, in multiples of this device’s own slicing.")
+            plots.speed_ups, sweep, "Speed in multiples of this device’s own slicing, of the same series. " + paired_words(sweep))
             + paper_table(sweep)),
         section("Work per frame", figure(
             plots.counters, sweep, "What the shader did. Counts, not times: they depend on the picture, not on the device’s speed.")),
         section("Memory and speed", memory_and_speed(sweep)),
         section("Compiling the variants", figure(
-            plots.compile_times, sweep, "Compile and link of each variant and what its first frame took beyond a usual one, the driver’s caches off.")),
+            plots.compile_times, sweep, "Compile and link of each variant’s program, by the host’s clock until the driver says that it is "
+            "linked; and what its first frame took beyond a usual one, where drivers put work off until then. Mesa’s cache of shaders is off.")),
         section("Pictures", thumbnails(sweep)),
         section("Every row", all_rows(sweep)),
     ]

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from page_svg import MUTED, NARROW, WIDE, legend_above, plain_log_ticks, plt, svg
+from page_svg import MUTED, NARROW, WIDE, plain_log_ticks, plt, svg
 from report_data import COUNTERS, PAPER_FIGURES, number
 
 PLAIN = ("#b5532a", "#d79a55", "#8a6d3b")
@@ -19,6 +19,10 @@ def _colours(sweep):
         colours.append(palette[counts[series.skips] % len(palette)])
         counts[series.skips] += 1
     return colours
+
+
+def _key(sweep, marker="o"):
+    return [(series.label, colour, marker, False, "") for series, colour in zip(sweep.series, _colours(sweep))]
 
 
 def _ratio_axis(axes, sweep, room, label=True):
@@ -52,20 +56,18 @@ def frame_times(sweep, narrow):
         y = [row.median_ms for row in series.rows]
         spans = ([row.median_ms - row.low_ms for row in series.rows],
                  [row.high_ms - row.median_ms for row in series.rows])
-        axes.errorbar(x, y, spans, color=colour, lw=1.6, elinewidth=1.0, capsize=2.5, zorder=3,
-                      label=series.label)
+        axes.errorbar(x, y, spans, color=colour, lw=1.6, elinewidth=1.0, capsize=2.5, zorder=3)
         for row, xi in zip(series.rows, x):
             hollow = row.raw.get("form") == "loop"
             axes.plot(xi, row.median_ms, "o", ms=5, mec=colour, mew=1.3, zorder=4,
                       mfc="white" if hollow else colour)
     axes.set_ylabel("frame time, ms (log)")
-    if any(row.raw.get("form") == "loop" for row in sweep.rows):
-        axes.plot([], [], "o", ms=5, mec=MUTED, mfc="white", label="hollow: loop, not unrolled")
+    loops = any(row.raw.get("form") == "loop" for row in sweep.rows)
     fps = axes.secondary_yaxis("right", functions=(_reciprocal, _reciprocal))
     fps.set_ylabel("frames per second")
     plain_log_ticks(fps.yaxis)
-    legend_above(axes, narrow)
-    return svg(figure, f"times{'-n' if narrow else ''}")
+    return svg(figure, f"times{'-n' if narrow else ''}",
+               _key(sweep) + [("hollow: loop, not unrolled", MUTED, "o", True, None)] * loops)
 
 
 def _reciprocal(value):
@@ -73,17 +75,24 @@ def _reciprocal(value):
     return 1000.0 / np.maximum(value, 1e-9)
 
 
+def _errorbars(axes, x, values, intervals, colour):
+    spans = [[value - (value if low is None else low) for value, (low, _) in zip(values, intervals)],
+             [(value if high is None else high) - value for value, (_, high) in zip(values, intervals)]]
+    axes.errorbar(x, values, spans, color=colour, marker="o", ms=4, lw=1.6, elinewidth=1.0, capsize=2.5, zorder=3)
+
+
 def speed_ups(sweep, narrow):
     """Speed as a multiple of slicing: the one scale on which another device's figures may stand beside ours."""
-    if not any(series.slicing for series in sweep.series):
+    if not any(row.speed_up("slicing") for row in sweep.rows):
         return None
     figure, axes = plt.subplots(figsize=(NARROW, 3.3) if narrow else (WIDE, 3.3))
     places = _ratio_axis(axes, sweep, 5 if narrow else 14)
-    for series, colour in zip(sweep.series, _colours(sweep)):
-        if series.slicing:
-            axes.plot([places[row.ratio] for row in series.rows],
-                      [series.speed_up(row) for row in series.rows],
-                      "o-", color=colour, lw=1.6, ms=4, label=series.label, zorder=3)
+    middle = (len(sweep.series) - 1) / 2
+    for i, (series, colour) in enumerate(zip(sweep.series, _colours(sweep))):
+        rows = [row for row in series.rows if row.speed_up("slicing")]
+        if rows:
+            _errorbars(axes, [places[row.ratio] + 0.09 * (i - middle) for row in rows],
+                       [row.speed_up("slicing") for row in rows], [row.interval("slicing") for row in rows], colour)
     axes.axhline(1.0, color=MUTED, lw=0.9)
     reached = PAPER_FIGURES["hybrid"][1] / PAPER_FIGURES["slicing"][1]
     axes.axhline(reached, color=PAPER, lw=1.0, ls=(0, (4, 3)))
@@ -92,8 +101,7 @@ def speed_ups(sweep, narrow):
                   fontsize=7.5, color=MUTED)
     axes.set_ylim(bottom=0, top=max(axes.get_ylim()[1], reached * 1.15))
     axes.set_ylabel("speed, slicing = 1")
-    legend_above(axes, narrow)
-    return svg(figure, f"speed{'-n' if narrow else ''}")
+    return svg(figure, f"speed{'-n' if narrow else ''}", _key(sweep))
 
 
 def counters(sweep, narrow):
@@ -115,38 +123,44 @@ def counters(sweep, narrow):
             points = [(places[r.ratio], r.counter(name)) for r in series.rows
                       if r.counter(name) is not None]
             axes.plot([x for x, _ in points], [y / 1e6 for _, y in points], "o-", color=colour,
-                      lw=1.4, ms=3, label=series.label, clip_on=False)
+                      lw=1.4, ms=3, clip_on=False)
         axes.set_title(f"{COUNTERS[name]}, millions per frame")
         axes.set_ylim(bottom=0)
         axes.yaxis.set_major_locator(MaxNLocator(4))
         axes.tick_params(axis="x", labelbottom=bottom)
-    if narrow:
-        legend_above(panels[0], narrow, y=1.16)
-    else:
-        figure.legend(*panels[0].get_legend_handles_labels(), loc="lower right", fontsize=8)
-    return svg(figure, f"work{'-n' if narrow else ''}")
+    return svg(figure, f"work{'-n' if narrow else ''}", _key(sweep))
+
+
+def _making(row):
+    """(compile and link, what the first frame took beyond a usual one), ms; None where not measured."""
+    compiled, first = number(row.raw.get("compile_ms")), number(row.raw.get("first_frame_ms"))
+    return None if compiled is None else (compiled, max(0.0, (first or 0.0) - row.median_ms))
 
 
 def compile_times(sweep, narrow):
     """Per variant the longest time measured: later uses find it compiled."""
     longest = {}
     for row in sweep.rows:
-        name, ms = row.raw.get("variant"), number(row.raw.get("compile_ms"))
-        if name and ms is not None:
-            key = (str(name), row.raw.get("skip") not in (None, "none"))
-            longest[key] = max(ms, longest.get(key, 0.0))
+        name, made = row.raw.get("variant"), _making(row)
+        if name and made:
+            place = (str(name), row.raw.get("skip") not in (None, "none"))
+            longest[place] = max(made, longest.get(place, made), key=sum)
     if not longest:
         return None
     ordered = sorted(longest.items(), key=lambda item: item[0][::-1])
     figure, axes = plt.subplots(figsize=(NARROW if narrow else WIDE, 0.23 * len(ordered) + 0.7))
-    for place, ((_, skips), ms) in enumerate(ordered):
-        axes.barh(place, ms, height=0.68, color=SKIPPING[0] if skips else PLAIN[0])
-        axes.annotate(f" {ms:.0f}" if ms >= 10 else f" {ms:.1f}", (ms, place), va="center",
-                      fontsize=7.5, color=MUTED)
-    axes.set_yticks(range(len(ordered)), [name for (name, _), _ in ordered], fontsize=7.5)
+    for place, (_, (compiled, beyond)) in enumerate(ordered):
+        axes.barh(place, compiled, height=0.68, color=SKIPPING[0])
+        axes.barh(place, beyond, left=compiled, height=0.68, color=SKIPPING[1])
+        total = compiled + beyond
+        axes.annotate(f" {total:.0f}" if total >= 10 else f" {total:.1f}", (total, place), va="center", fontsize=7.5,
+                      color=MUTED)
+    axes.set_yticks(range(len(ordered)), [name for (name, _), _ in ordered], fontsize=7.5 if not narrow else 6)
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
     axes.tick_params(axis="y", length=0)
     axes.margins(x=0.1, y=0.01)
-    axes.set_xlabel("compile and link, ms")
-    return svg(figure, f"compile{'-n' if narrow else ''}")
+    axes.set_xlabel("ms")
+    return svg(figure, f"compile{'-n' if narrow else ''}",
+               [("compile and link", SKIPPING[0], "s", False, None),
+                ("its first frame, beyond a usual one", SKIPPING[1], "s", False, None)])

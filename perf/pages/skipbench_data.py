@@ -35,7 +35,7 @@ class Row:
 
     @property
     def structure(self):
-        return str(self.raw.get("structure", "none"))
+        return str(self.raw.get("skip", "none"))
 
     @property
     def name(self):
@@ -55,10 +55,15 @@ class Row:
         return self.at("speedup")
 
     @property
+    def interval(self):
+        """(low, high) of the speed-up; None each where not known."""
+        return self.at("speedup_low"), self.at("speedup_high")
+
+    @property
     def parameters(self):
         """In a few words; what a structure does not have goes without saying."""
         words = []
-        for key, say in (("block_edge", "{}³"), ("bits", "{} bits"), ("partitions", "{} partitions"),
+        for key, say in (("skip_block", "{}³"), ("skip_bits", "{} bits"), ("partitions", "{} partitions"),
                          ("initial_level", "level {}"), ("traversal", "{}")):
             if self.raw.get(key) is not None:
                 words.append(say.format(self.raw[key]))

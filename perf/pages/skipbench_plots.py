@@ -2,8 +2,7 @@
 
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter, NullLocator
 
-from page_html import esc
-from page_svg import INK, MUTED, NARROW, PAPER_WHITE, WIDE, key, plain_number, plt, svg
+from page_svg import INK, MUTED, NARROW, PAPER_WHITE, WIDE, plain_number, plt, svg
 from skipbench_data import MODES, NAMES, STRUCTURES, middle
 
 COLOURS = {"none": "#8b8f96", "blocks": "#b59a6a", "proximity": "#1d5a91", "chebyshev": "#5aa0a8",
@@ -14,11 +13,8 @@ TRANSFERS = {"TF1": "#1d5a91", "TF2": "#8b8f96", "TF3": "#d9a02b", "TF4": "#b548
 DIAMOND = {"marker": "D", "ms": 3.2, "mfc": PAPER_WHITE, "mec": INK, "mew": 0.8, "ls": "none", "zorder": 5}
 
 
-def key_of_structures(structures, published=False):
-    entries = [(NAMES[name], COLOURS[name], "s", False, None) for name in STRUCTURES if name in structures]
-    if published:
-        entries.append(("the paper's datasets, on its device", INK, "D", True, None))
-    return key(entries)
+def key_of_structures(structures):
+    return [(NAMES[name], COLOURS[name], "s", False, None) for name in STRUCTURES if name in structures]
 
 
 def _log_axis(axis):
@@ -33,9 +29,13 @@ def _id(what, bench, volume, narrow):
     return f"{what}-{place}{'-n' if narrow else ''}"
 
 
-def _bar(axes, place, speedup, **look):
-    """From 1, what none takes: to the right what is faster, to the left what is slower."""
-    axes.barh(place, speedup - 1, left=1, zorder=2, **look)
+def _bar(axes, place, row, **look):
+    """From 1, what none takes: to the right what is faster, to the left what is slower; with the ratio's interval."""
+    axes.barh(place, row.speedup - 1, left=1, zorder=2, **look)
+    low, high = row.interval
+    if low is not None and high is not None:
+        axes.errorbar(row.speedup, place, xerr=[[row.speedup - low], [high - row.speedup]], fmt="none", ecolor=INK,
+                      elinewidth=0.9, capsize=1.8, capthick=0.9, zorder=4.5)
 
 
 def _panels(titles, tall, narrow):
@@ -80,12 +80,15 @@ def speedups(bench, volume):
         figure, panels = _panels(list(modes), 2.1, narrow)
         for axes, (mode, rows) in zip(panels, modes.items()):
             for place, row in enumerate(rows):
-                _bar(axes, place, row.speedup, height=0.66, color=COLOURS.get(row.structure, MUTED))
+                _bar(axes, place, row, height=0.66, color=COLOURS.get(row.structure, MUTED))
                 for value in bench.published(row.structure, mode):
                     axes.plot(value, place, **DIAMOND)
             _name_bars(axes, [row.structure for row in rows])
         _name_axis(panels, "times as fast as none (log)", narrow)
-        return svg(figure, _id("speed", bench, volume, narrow))
+        entries = [("interval of the ratio", INK, "|", False, "")]
+        if any(bench.published(row.structure, mode) for mode, rows in modes.items() for row in rows):
+            entries.append(("the paper's datasets, on its device", INK, "D", True, None))
+        return svg(figure, _id("speed", bench, volume, narrow), entries)
     return draw
 
 
@@ -103,18 +106,20 @@ def families(bench, volume):
             apart = 0.19 if len(rows) > len(names) else 0  # of the two kinds of planes
             for row in rows:
                 tight, colour = bool(row.get("tighten")), COLOURS.get(row.structure, MUTED)
-                _bar(axes, names.index(row.structure) + (apart if tight else -apart), row.speedup, edgecolor=colour,
+                _bar(axes, names.index(row.structure) + (apart if tight else -apart), row, edgecolor=colour,
                      height=0.34 if apart else 0.66, color=colour if tight else PAPER_WHITE, linewidth=1)
             _name_bars(axes, names)
         _name_axis(panels, "times as fast as none, planes of the sphere (log)", narrow)
-        return svg(figure, _id("families", bench, volume, narrow))
+        return svg(figure, _id("families", bench, volume, narrow),
+                   [("planes as rectangles", MUTED, "s", False, None), ("planes of the sphere", MUTED, "s", True, None),
+                    ("interval of the ratio", INK, "|", False, "")])
     return draw
 
 
 def merging(bench, volume):
     """A panel per block edge: merge times over partitions, against both ways to rebuild."""
     def draw(_, narrow):
-        edges = sorted({row.get("block_edge") for row in bench.of("rebuild", volume=volume)}, reverse=True)
+        edges = sorted({row.get("skip_block") for row in bench.of("rebuild", volume=volume)}, reverse=True)
         if not edges:
             return None
         columns = 1 if narrow else len(edges)
@@ -124,10 +129,10 @@ def merging(bench, volume):
                                     figsize=(NARROW, 2.5 * lines) if narrow else (WIDE, 3.1))
         for axes, edge in zip(grid.flat, edges):
             for transfer, colour in TRANSFERS.items():
-                rows = bench.of("merge", volume=volume, block_edge=edge, tf=transfer)
+                rows = bench.of("merge", volume=volume, skip_block=edge, tf=transfer)
                 axes.plot([row.get("partitions") for row in rows], [row.at("update_ms", "median") for row in rows],
                           "o-", color=colour, lw=1.3, ms=3.4, zorder=3)
-            rebuilds = bench.of("rebuild", volume=volume, block_edge=edge, structure="chebyshev")
+            rebuilds = bench.of("rebuild", volume=volume, skip_block=edge, skip="chebyshev")
             for name, style in (("build_ms", "-"), ("of_ranges_ms", (0, (4, 3)))):
                 level = middle([row.at(name, "median") for row in rebuilds])
                 if level is not None:
@@ -143,15 +148,14 @@ def merging(bench, volume):
             axes.set_title(f"blocks of {edge}³ voxels" if edge > 1 else "single voxels")
             axes.set_xlabel("partitions", color=MUTED)
         grid.flat[0].set_ylabel("ms (log)")
-        return svg(figure, _id("merging", bench, volume, narrow))
+        return svg(figure, _id("merging", bench, volume, narrow), key_of_transfers(bench, volume))
     return draw
 
 
 def key_of_transfers(bench, volume):
     names = {row.get("tf"): row.get("tf_name") for row in bench.of("rebuild", volume=volume)}
-    merged = [(esc(f"{tf}: {names[tf]}"), colour, "o", False, "none") for tf, colour in TRANSFERS.items() if tf in names]
-    return key([*merged, ("rebuilt in full", INK, None, False, "none"),
-                ("rebuilt of kept ranges", INK, None, False, "4 3")])
+    merged = [(f"{tf}: {names[tf]}", colour, "o", False, "") for tf, colour in TRANSFERS.items() if tf in names]
+    return [*merged, ("rebuilt in full", INK, None, False, ""), ("rebuilt of kept ranges", INK, None, False, "4 3")]
 
 
 def _mebibytes(row):
@@ -189,4 +193,4 @@ def sizes(bench, narrow):
         if high > 100 * low:
             axes.yaxis.set_major_locator(LogLocator(10, numticks=9))
         axes.set_title(f"{title} (log)")
-    return svg(figure, f"sizes{'-n' if narrow else ''}")
+    return svg(figure, f"sizes{'-n' if narrow else ''}", key_of_structures({row.structure for row in rows}))

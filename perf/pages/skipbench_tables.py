@@ -1,6 +1,7 @@
 """The tables of the comparison: what was measured, with the papers' figures beside it."""
 
-from page_html import MISSING, esc, figures, mebibytes, millions, plural, table, times
+from page_html import (MISSING, coverage_words, esc, figures, interval, mebibytes, millions, plural, table,
+                       times)
 from page_input import number
 from skipbench_data import MODES, NAMES, STRUCTURES, span
 
@@ -45,28 +46,40 @@ def _goal(entry):
     return MISSING if goal is None else f"{'≥' if entry.get('sense') == '>=' else '≤'} {figures(goal)}"
 
 
-def _figure_lines(entries):
+def _value(entry):
+    """What was measured, and below it its interval where it is paired."""
+    low, high = number(entry.get("low")), number(entry.get("high"))
+    spread = interval(low, high)
+    return figures(entry.get("value")) + (f"<br><i>{spread}</i>" if spread else "")
+
+
+def _figure_lines(entries, judged):
     if not entries:
         return ""
     lines = []
     for entry in entries:
         name, volume, origin = (esc(entry.get(key, "")) for key in ("name", "volume", "from"))
-        lines.append([f"{cubed(name)}<small>{volume}: {origin}</small>", figures(entry.get("value")), _goal(entry),
-                      _verdict(entry)])
+        line = [f"{cubed(name)}<small>{volume}: {origin}</small>", _value(entry)]
+        lines.append([*line, _goal(entry), _verdict(entry)] if judged else line)
     css = ["failed" if entry.get("reached") is False else "" for entry in entries]
-    return table(["figure", "measured", "goal", "reached"], lines, css="cases bench", row_css=css)
+    head = ["figure", "measured", *(["goal", "reached"] if judged else [])]
+    return table(head, lines, css="cases bench", row_css=css)
 
 
 def figures_to_reach(bench):
-    """Those with a goal; those without wait behind a line."""
+    """Those with a goal; those without wait behind a line, or stand alone where no volume has goals."""
     judged = [entry for entry in bench.figures if entry.get("goal") is not None]
     others = [entry for entry in bench.figures if entry.get("goal") is None]
     if not bench.figures:
         return ""
-    rest = folded(f"{plural(len(others), 'figure')} without a goal, for comparison", _figure_lines(others))
-    return _figure_lines(judged) + (rest if others else "") + note(
+    rest = _figure_lines(others, False)
+    if judged and others:
+        rest = folded(f"{plural(len(others), 'figure')} without a goal, for comparison", rest)
+    goals = "" if judged else " Goals were set for the project’s own scenes only."
+    return _figure_lines(judged, True) + rest + note(
         "Worked out from the rows of this run. Times are compared within a race: the median over its rounds of the "
-        "ratios of two frames of the same round, which may differ from the ratio of two medians.")
+        "ratios of two frames of the same round, which may differ from the ratio of two medians; below it its "
+        f"interval.{goals} {coverage_words(next((entry.get('coverage') for entry in bench.figures if entry.get('coverage')), None))}")
 
 
 # Frames
@@ -74,7 +87,7 @@ def figures_to_reach(bench):
 
 def _parameters(bench, volume, marching):
     """Those of the first mode, and below them those with early exit where they are others."""
-    leaving = bench.one("frames", volume=volume, family="ray casting", mode="early exit", structure=marching.structure)
+    leaving = bench.one("frames", volume=volume, family="ray casting", mode="early exit", skip=marching.structure)
     others = leaving.parameters if leaving else marching.parameters
     differ = f"<br><i>early exit: {esc(others)}</i>" if others != marching.parameters else ""
     return esc(marching.parameters) + differ
@@ -90,13 +103,13 @@ def ray_casting(bench, volume):
     for first in bench.of("frames", volume=volume, family="ray casting", mode=modes[0]):
         cells = [first.name, _parameters(bench, volume, first)]
         for mode in modes:
-            row = bench.one("frames", volume=volume, family="ray casting", mode=mode, structure=first.structure)
+            row = bench.one("frames", volume=volume, family="ray casting", mode=mode, skip=first.structure)
             cells += [f"{figures(row.ms)}<br><i>{span(row.spread, figures)}</i>" if row else MISSING,
-                      f"<b>{times(row.speedup)}</b>" if row else MISSING,
+                      f"<b>{times(row.speedup)}</b><br><i>{interval(*row.interval)}</i>" if row else MISSING,
                       span(bench.published(first.structure, mode), lambda value: f"{value:.2f}") or MISSING]
         lines.append(cells)
     paper = bench.paper("faludi")
-    told = "Median of a turn’s frames; below it the fastest and the slowest."
+    told = "Median of a turn’s frames; below it the fastest and the slowest. Below a ratio its interval."
     if paper:
         told += (f" “Paper”: {esc(paper.get('source', ''))}, least to greatest of its datasets, on its device "
                  f"({esc(paper.get('device', ''))}); its distance map is Euclidean, of 4-voxel blocks.")
@@ -121,11 +134,11 @@ def families(bench, volume):
             lines.append([row.name, esc(row.get("family")), esc(row.get("mode")),
                           f"{esc(row.get('planes'))}×{esc(row.get('layers_per_plane'))}",
                           "rectangles" if row.get("tighten") else "sphere", esc(row.get("order", MISSING)),
-                          figures(row.ms), span(row.spread, figures), times(row.speedup),
+                          figures(row.ms), span(row.spread, figures), times(row.speedup), interval(*row.interval),
                           millions(row.at("counters", "layers_evaluated")),
                           millions(row.at("counters", "skip_fetches"))])
     head = ["structure", "family", "mode", "planes × layers", "planes are", "blended", "ms", "min – max",
-            "times as fast", "layers, M", "skip fetches, M"]
+            "times as fast", "its interval", "layers, M", "skip fetches, M"]
     return lines and folded(f"{len(lines)} rows, each at its best ratio", table(head, lines, css="rows bench"))
 
 
@@ -144,7 +157,7 @@ def _heat(rows, down, across, caption):
     cells = {}
     for row in rows:
         place = row.get(down[0]), row.get(across[0])
-        cells[place] = min(row.at("ms"), cells.get(place, float("inf")))
+        cells[place] = min(row.at("search_ms"), cells.get(place, float("inf")))
     best = min(cells.values())
     columns = sorted({place[1] for place in cells})  # of one kind: numbers, or words, or nothing at all
     lines = []
@@ -158,13 +171,13 @@ def _heat(rows, down, across, caption):
 
 def searched(bench, volume):
     """Each structure's grid, folded to two of its parameters at a time."""
-    edge, level = ("block_edge", lambda value: f"{value}³ voxels"), ("initial_level", lambda value: f"level {value}")
-    bits, way, nothing = ("bits", lambda value: f"{value} bits"), ("traversal", str), ("", lambda _: "ms")
+    edge, level = ("skip_block", lambda value: f"{value}³ voxels"), ("initial_level", lambda value: f"level {value}")
+    bits, way, nothing = ("skip_bits", lambda value: f"{value} bits"), ("traversal", str), ("", lambda _: "ms")
     parts = []
     for structure in STRUCTURES:
-        rows = [row for row in bench.of("search", volume=volume, structure=structure) if row.at("ms")]
+        rows = [row for row in bench.of("search", volume=volume, skip=structure) if row.at("search_ms")]
         if rows:
-            has_bits, name = rows[0].get("bits") is not None, NAMES[structure]
+            has_bits, name = rows[0].get("skip_bits") is not None, NAMES[structure]
             parts.append(_heat(rows, edge, bits if has_bits else nothing, name))
             if rows[0].get("traversal"):
                 parts.append(_heat(rows, level, way, name))
@@ -211,7 +224,7 @@ def generation(bench, volume):
             f"{f' ({figures(codes)} ms, once)' if codes else ''}, the GPU with the volume’s texture; the GPU’s times end "
             "when the host has its copy, too. ")
     ours = [row and row.at("build_ms", "median") for row in (
-        bench.one("structures", volume=volume, structure=name) for name in ("proximity", "bitfield-octree"))]
+        bench.one("structures", volume=volume, skip=name) for name in ("proximity", "bitfield-octree"))]
     paper = span([data["generation"][0] / data["generation"][3] for data in bench.paper("faludi").get("datasets", [])],
                  lambda value: f"{value:.1f}")
     if all(ours) and paper:
@@ -241,22 +254,22 @@ def _merged(bench, row, edge, transfer, count):
     if row is None:
         return MISSING
     paper = span(bench.published_merges(transfer, count), lambda value: f"{value:.1f}×") if edge == 4 else ""
-    return (f"{figures(row.at('update_ms', 'median'))} ms <b>{row.speedup:.1f}×</b>"
+    return (f"{figures(row.at('update_ms', 'median'))} ms <b>{row.speedup:.1f}×</b> <i>{interval(*row.interval, 1)}</i>"
             + (f"<br><i>{paper}</i>" if paper else ""))
 
 
 def _merges_at(bench, volume, edge, counts):
     """One block edge: a line per transfer function, then what the partitions take once."""
     lines = []
-    for rebuild in bench.of("rebuild", volume=volume, block_edge=edge, structure="chebyshev"):
+    for rebuild in bench.of("rebuild", volume=volume, skip_block=edge, skip="chebyshev"):
         transfer = rebuild.get("tf", "")
-        proximity = bench.one("rebuild", volume=volume, block_edge=edge, structure="proximity", tf=transfer)
+        proximity = bench.one("rebuild", volume=volume, skip_block=edge, skip="proximity", tf=transfer)
         lines.append([f"{esc(transfer)}<small>{esc(rebuild.get('tf_name', ''))}</small>",
                       figures(rebuild.at("build_ms", "median")), figures(rebuild.at("of_ranges_ms", "median")),
                       figures(proximity.at("build_ms", "median")) if proximity else MISSING,
-                      *(_merged(bench, bench.one("merge", volume=volume, block_edge=edge, tf=transfer,
+                      *(_merged(bench, bench.one("merge", volume=volume, skip_block=edge, tf=transfer,
                                                  partitions=count), edge, transfer, count) for count in counts)])
-    made = [bench.one("partitions", volume=volume, block_edge=edge, partitions=count) for count in counts]
+    made = [bench.one("partitions", volume=volume, skip_block=edge, partitions=count) for count in counts]
     lines.append(["one time, ms", "", "", "", *(_once(row) for row in made)])
     lines.append(["memory", "", "", "", *(_kept(row) for row in made)])
     head = [f"blocks of {edge}³" if edge > 1 else "single voxels", "rebuilt, ms", "of kept ranges, ms",
@@ -267,7 +280,7 @@ def _merges_at(bench, volume, edge, counts):
 def merging(bench, volume):
     """Rebuilding over merging, for every edge, transfer function and number of partitions; the paper's below ours."""
     counts = sorted({row.get("partitions") for row in bench.of("partitions", volume=volume)})
-    edges = sorted({row.get("block_edge") for row in bench.of("rebuild", volume=volume)}, reverse=True)
+    edges = sorted({row.get("skip_block") for row in bench.of("rebuild", volume=volume)}, reverse=True)
     told = ("Times to follow a change of transfer function on the processor; in bold how many times faster merging is "
             "than rebuilding the Chebyshev map in full. “Of kept ranges” rebuilds from the least and greatest value "
             "of every block, which no transfer function changes: ours, not the paper’s. The least value has a "
@@ -289,7 +302,7 @@ def sizes(bench):
     for name in STRUCTURES:
         cells = [NAMES[name]]
         for edge in edges:
-            row = bench.one("sizes", structure=name, edge=edge)
+            row = bench.one("sizes", skip=name, edge=edge)
             if row is None:
                 cells += [MISSING] * 4
             else:

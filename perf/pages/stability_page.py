@@ -117,9 +117,8 @@ def family_plots(family):
     parts = []
     for i, (labels, panels) in enumerate(plots.plots_of(family)):
         draw = plots.curves(panels, labels, f"curves-{family.name}-{i}".replace(" ", "-"))
-        parts.append(plots.key_of_groups(panels)
-                     + figure(draw, None, f"{esc(labels[1])} over {esc(labels[0])}, on logarithmic scales. "
-                              "What is below a millionth of the largest, or zero, is drawn as a millionth."))
+        parts.append(figure(draw, None, f"{esc(labels[1])} over {esc(labels[0])}, on logarithmic scales. "
+                            f"What is below {scientific(plots.floor_of(panels), 1)}, or zero, is drawn there."))
     return "".join(parts)
 
 
@@ -168,12 +167,35 @@ def left_out(family):
     return lines and f'<div class="bleed">{table(head, lines, css="scenes")}</div>' or ""
 
 
+def conditions(family):
+    """How much of an input's relative change the picture changes by, and by how much it may."""
+    lines = []
+    for case in family.cases:
+        found = case.extra("condition")
+        if not found:
+            continue
+        limit, jumping = number(found.get("limit")), number(found.get("jumping_share"))
+        lines.append([f"{esc(found.get('scene', ''))}<small>{esc(found.get('input', ''))}</small>",
+                      scientific(found.get("perturbation"), 2), scientific(found.get("largest_change"), 2),
+                      figures(found.get("condition_number")),
+                      figures(limit) if limit is not None else "<b>unbounded</b>: a step",
+                      f"{100 * jumping:.3g} %" if jumping else "none"])
+    head = ["scene, input", "relative change of the input", "largest change of the picture", "condition number",
+            "at most, by derivatives", "pixels that jump"]
+    return lines and table(head, lines, css="paper") + (
+        '<p class="note">The condition number is the largest change of any component of any pixel over the relative '
+        "change of the input (of an eye, over its distance from the volume’s centre). A pixel jumps where it changes by "
+        "more than derivatives allow: past a step of the transfer function, where change over change has no bound, though "
+        "no sample may lie within reach. Shares are of the pixels that the volume covers.</p>") or ""
+
+
 def family_section(stability, family):
     failed = len(family.failed)
     count = plural(len(family.cases), "case")
     state = f"<b class=fail>{failed} of {count} fail{'s' if failed == 1 else ''}</b>" if failed else (
         f"{count}, all within {'its bound' if len(family.cases) == 1 else 'their bounds'}")
-    body = (f"<p class=lede>{state}</p>" + half_precision(family) + left_out(family) + family_plots(family)
+    body = (f"<p class=lede>{state}</p>" + half_precision(family) + left_out(family) + conditions(family)
+            + family_plots(family)
             + "".join(group(stability, reason, cases) for reason, cases in by_reason(family.cases)))
     return section(esc(family.title), body, anchor=f"family-{family.name}")
 

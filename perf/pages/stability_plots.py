@@ -3,16 +3,18 @@
 import textwrap
 
 import numpy as np
-from matplotlib.ticker import LogLocator, NullLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from page_input import number
-from page_svg import INK, NARROW, WIDE, key, plain_log_ticks, plt, svg
+from page_svg import INK, NARROW, WIDE, plain_log_ticks, plt, svg
 
 PASSED, FAILED = "#1d5a91", "#c0392b"
 LEAST, MOST = 1e-6, 1e2  # shares of the bound that are told apart; what is beyond lies at the rim
 HUES = ("#22262b", "#1d5a91", "#b5485a", "#d9a02b", "#2f8f8b")
 SHAPES = "os^vD"
-RANGE = 1e6  # of the ordinate, at most
+RANGE = 1e6  # of the ordinate, at most, where no bounds are drawn
+BELOW = 20  # times below the least bound an ordinate begins
+PLAIN = 1e3  # of the abscissa: beyond, its ticks are decades
 MOST_CURVES = 6  # in a panel, before it is divided
 
 
@@ -44,7 +46,7 @@ def shares(stability, narrow):
 
 
 def plots_of(family):
-    """What the family's cases plot: [((x label, y label), {panel: {group: points in order}})].
+    """What the family's cases plot: [((x label, y label), {panel: {group: [(x, y, bound or None)]}})].
 
     Panels stand in one plot where they share their labels and their groups.
     """
@@ -55,7 +57,8 @@ def plots_of(family):
         if x is not None and y is not None and x > 0 and y >= 0:
             labels, panel, group = ((str(series.get("x_label", "x")), str(series.get("y_label", "y"))),
                                     str(series.get("panel", "")), str(series.get("group", "")))
-            panels.setdefault((labels, panel), {}).setdefault(group, []).append((x, y))
+            panels.setdefault((labels, panel), {}).setdefault(group, []).append(
+                (x, y, number(series.get("bound"))))
     found = {}
     for (labels, panel), groups in panels.items():
         for title, divided in _divided(panel, groups).items():
@@ -82,15 +85,50 @@ def _styles(panels):
             for i, name in enumerate(names)}
 
 
-def key_of_groups(panels):
-    return key([(name, colour, shape, again, "4 2" if again else "")
-                for name, (colour, shape, again) in _styles(panels).items()])
+def _power_of_ten(value, _=None):
+    """10⁻³ in letters: quicker to set than a formula, and text where the figure is read."""
+    power = round(np.log10(value))
+    return "1" if power == 0 else "10" + str(power).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+
+
+def _decades(axis):
+    axis.set_major_locator(LogLocator(10, numticks=9))
+    axis.set_major_formatter(FuncFormatter(_power_of_ten))
+
+
+def _key(panels):
+    entries = [(name, colour, shape, again, "4 2" if again else "")
+               for name, (colour, shape, again) in _styles(panels).items()]
+    return entries + ([("bound", INK, None, False, "1 2")] if _bounds(panels) else [])
+
+
+def _bounds(panels):
+    return [bound for groups in panels.values() for points in groups.values() for _, _, bound in points if bound]
+
+
+def floor_of(panels):
+    """What is below is drawn there: beneath all bounds, or at a millionth of the largest."""
+    bounds = _bounds(panels)
+    if bounds:
+        return min(bounds) / BELOW
+    return (max(y for groups in panels.values() for points in groups.values() for _, y, _ in points) or 1.0) / RANGE
+
+
+def _curve(axes, points, style, floor):
+    colour, shape, again = style
+    points = sorted(points, key=lambda point: point[0])
+    axes.plot([x for x, _, _ in points], [max(y, floor) for _, y, _ in points], color=colour, marker=shape, ms=4.5,
+              lw=1.4, mec=colour, mfc="white" if again else colour, dashes=(4, 2) if again else (None, None), zorder=3)
+    bounds = [(x, bound) for x, _, bound in points if bound]
+    if bounds:
+        axes.plot(*zip(*bounds), color=colour, lw=1.1, dashes=(1, 2), zorder=2)
 
 
 def curves(panels, labels, name):
-    """A function for page_html.figure: y over x, a curve per group, log-log; what is tiny or zero at the rim."""
-    largest = max(y for groups in panels.values() for points in groups.values() for _, y in points) or 1.0
-    floor = largest / RANGE
+    """A function for page_html.figure: y over x, a curve per group, log-log, and the bounds of y where they are told;
+    what is tiny or zero at the rim."""
+    floor = floor_of(panels)
+    xs = [x for groups in panels.values() for points in groups.values() for x, _, _ in points]
 
     def draw(_, narrow):
         lines, columns = (len(panels), 1) if narrow else (-(-len(panels) // 2), min(2, len(panels)))
@@ -100,16 +138,13 @@ def curves(panels, labels, name):
             axes.set_visible(False)
         for axes, (title, groups) in zip(grid.flat, panels.items()):
             for group, points in groups.items():
-                colour, shape, again = _styles(panels)[group]
-                drawn = sorted((x, max(y, floor)) for x, y in points)
-                axes.plot(*zip(*drawn), color=colour, marker=shape, ms=4.5, lw=1.4, mec=colour,
-                          mfc="white" if again else colour, dashes=(4, 2) if again else (None, None))
+                _curve(axes, points, _styles(panels)[group], floor)
             axes.set(xscale="log", yscale="log", title=textwrap.fill(title, 46))
-            plain_log_ticks(axes.xaxis)
-            axes.yaxis.set_major_locator(LogLocator(10, numticks=9))
+            (plain_log_ticks if max(xs) <= PLAIN * min(xs) else _decades)(axes.xaxis)
+            _decades(axes.yaxis)
             for axis in (axes.xaxis, axes.yaxis):
                 axis.set_minor_locator(NullLocator())
         figure.supxlabel(labels[0], fontsize=9)
         figure.supylabel(labels[1], fontsize=9)
-        return svg(figure, f"{name}{'-n' if narrow else ''}")
+        return svg(figure, f"{name}{'-n' if narrow else ''}", _key(panels))
     return draw

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <iterator>
 
+#include "perf/report_json.h"
+#include "perf/run_store.h"
+#include "perf/settings_json.h"
 #include "perf/skip/builds.h"
 #include "perf/skip/figures.h"
 #include "perf/skip/frames.h"
@@ -15,16 +18,21 @@ namespace slabcast::skipbench {
 
 namespace {
 
-VolumeRecord recordOf(const Stage& stage, const std::string& input, const std::string& label,
+/// The CT skull that assets/prepare_skull.py makes, and the TF that its goals were set with.
+constexpr const char* kSkullVoxels = "7cddd6bf41a5f58c";
+constexpr const char* kSkullTransfer = "CT bone";
+
+VolumeRecord recordOf(const Stage& stage, const Input& input, const std::string& label,
                       const Workshop& workshop) {
     const Texels& texels = stage.scene().texels();
     return {.name = label,
-            .input = input,
+            .input = input.volume,
             .info = stage.info(),
             .transferFunction = stage.scene().look().tf.name,
             .texelFormat = texels.format,
             .texelBytes = static_cast<std::int64_t>(texels.data.size()),
-            .codesMs = workshop.codesMs()};
+            .codesMs = workshop.codesMs(),
+            .own = ownSceneOf(input, stage.scene().look().tf.name)};
 }
 
 /// The best parameters' structures, built and drawn.
@@ -32,7 +40,7 @@ Result<void> measureBest(Bench& bench, const Workshop& workshop, const BestParam
     bench.show("building");
     Result<std::vector<Row>> builds =
         buildRows(workshop, workshop.visibilityUnder(bench.stage.scene()), best.marching,
-                  kFewestFrames, bench.row(Table::Structures, {}));
+                  kFewestFrames, bench.row(Table::Structures, {}), bench.store);
     if (!builds) {
         return tl::unexpected(builds.error());
     }
@@ -46,11 +54,11 @@ Result<void> measureBest(Bench& bench, const Workshop& workshop, const BestParam
 }
 
 /// All tables of one volume but its sizes.
-Result<VolumeRecord> measureVolume(Bench& bench, const std::string& input, const Host& host) {
+Result<VolumeRecord> measureVolume(Bench& bench, const Input& input, const Host& host) {
     const std::string& tfName = bench.stage.scene().look().tf.name;
     if (!bench.stage.scene().facts().anythingVisible) {
         return fail(ErrorCode::InvalidArgument,
-                    input + ": '" + tfName +
+                    input.volume + ": '" + tfName +
                         "' shows nothing of it, so there is nothing to compare: give another --tf");
     }
     const Result<TransferFunction> other = host.otherTransfer(bench.stage);
@@ -90,15 +98,39 @@ struct Findings {
     }
 };
 
-Result<void> measureInput(const std::string& input, const Desc& desc, const StageDesc& opened,
-                          const Host& host, Findings& findings) {
+std::string subjectOf(const Desc& desc) {
+    std::string names;
+    for (const Input& input : desc.volumes) {
+        names += (names.empty() ? "" : ", ") + input.volume;
+    }
+    return names;
+}
+
+/// All that its pieces depend on.
+Json keyOf(const Desc& desc, const RunInfo& info) {
+    Json volumes = Json::list();
+    for (const Input& input : desc.volumes) {
+        volumes.push_back(input.key);
+    }
+    Json key = conditionsOf(desc.stage);
+    key.update({{"commit", info.commit},
+                {"device", toJson(desc.device)},
+                {"volumes", std::move(volumes)},
+                {"sizes", Json::listOf(desc.sizes)},
+                {"frames", desc.frames},
+                {"quick", desc.quick}});
+    return key;
+}
+
+Result<void> measureInput(const Input& input, const Desc& desc, const StageDesc& opened,
+                          const Host& host, RunStore& store, Findings& findings) {
     ProgressLine progress(host.watcher);
-    Result<Stage> stage = host.open(input, 0, opened);
+    Result<Stage> stage = host.open(input.volume, 0, opened);
     if (!stage) {
         return tl::unexpected(stage.error());
     }
     const std::string label = labelOf(stage->info().name, findings.volumes);
-    Bench bench{*stage, desc, label, progress};
+    Bench bench{*stage, desc, label, progress, store};
     return measureVolume(bench, input, host).map([&](VolumeRecord record) {
         findings.volumes.push_back(std::move(record));
         findings.add(std::move(bench.rows));
@@ -108,20 +140,33 @@ Result<void> measureInput(const std::string& input, const Desc& desc, const Stag
 
 } // namespace
 
-Result<Report> run(const Desc& desc, const Host& host, const RunInfo& info) {
+OwnScene ownSceneOf(const Input& input, const std::string& transferFunction) {
+    if (input.usualTransfer && input.volume.starts_with("phantom:")) {
+        return OwnScene::Phantom;
+    }
+    const bool skull = input.voxels == kSkullVoxels && transferFunction == kSkullTransfer;
+    return skull ? OwnScene::Skull : OwnScene::None;
+}
+
+Result<Report> run(const Desc& desc, const Host& host, const RunInfo& info, ReportFolder& folder) {
     SLABCAST_EXPECTS(desc.frames >= kFewestFrames, desc.frames);
+    Result<RunStore> store = RunStore::open(
+        folder, {"skipbench", subjectOf(desc), info.command, keyOf(desc, info)}, host.watcher);
+    if (!store) {
+        return tl::unexpected(store.error());
+    }
     StageDesc opened = desc.stage;
     opened.settings.shaded = true;                // for the rows that are; others leave it out
     opened.settings.skip = SkipStructure::Blocks; // codes are made here, for all that follow
     Findings findings;
-    for (const std::string& input : desc.volumes) {
-        if (Result<void> done = measureInput(input, desc, opened, host, findings); !done) {
+    for (const Input& input : desc.volumes) {
+        if (Result<void> done = measureInput(input, desc, opened, host, *store, findings); !done) {
             return tl::unexpected(done.error());
         }
         if (findings.volumes.size() == 1) {
             ProgressLine progress(host.watcher);
             Result<std::vector<Row>> sizes =
-                measureSizes(desc, opened, host, findings.volumes.front(), progress);
+                measureSizes(desc, opened, host, findings.volumes.front(), progress, *store);
             if (!sizes) {
                 return tl::unexpected(sizes.error());
             }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/base/stopwatch.h"
+#include "perf/skip/row_json.h"
 
 namespace slabcast::skipbench {
 
@@ -91,37 +92,68 @@ Result<BuiltSkip> Workshop::buildOnGpu(const SkipOptions& options) const {
     return stage_.renderer().buildSkip(scene, options).map([&] { return scene.skip(); });
 }
 
-Result<std::vector<Row>> buildRows(const Workshop& workshop, const CellVisibility& visibility,
-                                   std::span<const SkipOptions> structures, int rounds,
-                                   const Row& beginning) {
+namespace {
+
+/// The same of each structure but none, in turn.
+Result<std::vector<Build>> buildAll(const Workshop& workshop, const CellVisibility& visibility,
+                                    std::span<const Row> rows, int rounds) {
     struct Sides {
-        SkipOptions options;
         Builds cpu, gpu;
     };
-    std::vector<Sides> all;
-    for (const SkipOptions& options : structures) {
-        if (options.structure != SkipStructure::None) {
-            all.push_back({options, {}, {}});
-        }
-    }
+    std::vector<Sides> all(rows.size());
     for (int round = -1; round < rounds; ++round) {
-        for (Sides& side : all) {
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            const SkipOptions& options = rows[k].options;
             const Result<void> built =
-                side.cpu.again([&] { return workshop.build(side.options, visibility); }, round >= 0)
+                all[k]
+                    .cpu.again([&] { return workshop.build(options, visibility); }, round >= 0)
                     .and_then([&] {
-                        return side.gpu.again([&] { return workshop.buildOnGpu(side.options); },
-                                              round >= 0);
+                        return all[k].gpu.again([&] { return workshop.buildOnGpu(options); },
+                                                round >= 0);
                     });
             if (!built) {
                 return tl::unexpected(built.error());
             }
         }
     }
+    std::vector<Build> builds;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        builds.push_back(resultOf(rows[k].options, std::move(all[k].cpu), std::move(all[k].gpu)));
+    }
+    return builds;
+}
+
+} // namespace
+
+Result<std::vector<Row>> buildRows(const Workshop& workshop, const CellVisibility& visibility,
+                                   std::span<const SkipOptions> structures, int rounds,
+                                   const Row& beginning, RunStore& store) {
     std::vector<Row> rows;
-    for (auto& [options, cpu, gpu] : all) {
-        rows.push_back(beginning);
-        rows.back().options = options;
-        rows.back().build = resultOf(options, std::move(cpu), std::move(gpu));
+    std::string id = "builds";
+    for (const SkipOptions& options : structures) {
+        if (options.structure != SkipStructure::None) {
+            rows.push_back(beginning);
+            rows.back().options = options;
+            id += " " + idOf(rows.back());
+        }
+    }
+    const Json* kept = store.find(id);
+    if (kept == nullptr || kept->at("builds").size() != rows.size()) {
+        const Result<std::vector<Build>> builds = buildAll(workshop, visibility, rows, rounds);
+        if (!builds) {
+            return tl::unexpected(builds.error());
+        }
+        Json piece = {{"id", id}, {"builds", Json::list()}};
+        for (const Build& build : *builds) {
+            piece["builds"].push_back(keptOf(build));
+        }
+        if (Result<void> done = store.add(std::move(piece)); !done) {
+            return tl::unexpected(done.error());
+        }
+        kept = store.find(id);
+    }
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        rows[k].build = buildOf(kept->at("builds").at(k));
     }
     return rows;
 }

@@ -39,8 +39,9 @@ private:
 /// `rounds` times, fewer where these take seconds: on the CPU, from codes and visibility to what is
 /// uploaded; on the GPU, from the volume's texture until the host has its copy; and what it holds.
 /// A row each, of which `beginning` is the beginning.
+/// From the store where all of them are there.
 Result<std::vector<Row>> buildRows(const Workshop& workshop, const CellVisibility& visibility,
                                    std::span<const SkipOptions> structures, int rounds,
-                                   const Row& beginning);
+                                   const Row& beginning, RunStore& store);
 
 } // namespace slabcast::skipbench

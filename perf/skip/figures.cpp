@@ -5,7 +5,6 @@
 #include "perf/frame_times.h"
 #include "perf/number.h"
 #include "perf/report_json.h"
-#include "perf/skip/paired_ratio.h"
 #include "perf/skip/row.h"
 
 namespace slabcast::skipbench {
@@ -45,7 +44,7 @@ Value quotient(Value a, Value b) {
 }
 
 Value speedupOf(const Row* row) {
-    return row != nullptr && row->raced ? Value(row->raced->speedup) : std::nullopt;
+    return row != nullptr && row->raced ? Value(row->raced->speedup.median) : std::nullopt;
 }
 
 /// Null where there is none.
@@ -59,15 +58,33 @@ const Row* fastest(const Rows& rows) {
     return best;
 }
 
+using Paired = std::optional<PairedRatio>;
+
 /// Time of one row over another's of the same race.
-Value pairedTimes(const Row* a, const Row* b) {
+Paired pairedTimes(const Row* a, const Row* b) {
     const bool both = a != nullptr && b != nullptr && a->raced && b->raced;
-    return both ? Value(pairedRatio(a->raced->samples, b->raced->samples)) : std::nullopt;
+    return both ? Paired(pairedRatio(a->raced->samples, b->raced->samples)) : std::nullopt;
 }
 
-/// Skull CT under bone is what most goals were set for.
+Value valueOf(const Paired& ratio) {
+    return ratio ? Value(ratio->median) : std::nullopt;
+}
+
+std::optional<MedianInterval> intervalOf(const Paired& ratio) {
+    return ratio ? std::optional(ratio->interval) : std::nullopt;
+}
+
+Paired speedupRatio(const Row* row) {
+    return row != nullptr && row->raced ? Paired(row->raced->speedup) : std::nullopt;
+}
+
+/// What most goals were set for.
 bool isBone(const VolumeRecord& volume) {
-    return volume.info.modality == Modality::Ct && volume.transferFunction == "CT bone";
+    return volume.own == OwnScene::Skull;
+}
+
+bool isOwn(const VolumeRecord& volume) {
+    return volume.own != OwnScene::None;
 }
 
 Value goalIf(bool meant, double goal) {
@@ -98,9 +115,10 @@ const Row* distanceMap(const Judged& judged, const Mode& mode) {
     return fastest(maps);
 }
 
-Value timeOverDistanceMap(const Judged& judged, SkipStructure structure) {
+/// Marching only; null where it was not measured.
+const Row* marched(const Judged& judged, SkipStructure structure) {
     const Rows rows = castBy(judged, structure, kMarchingOnly);
-    return pairedTimes(rows.empty() ? nullptr : rows.front(), distanceMap(judged, kMarchingOnly));
+    return rows.empty() ? nullptr : rows.front();
 }
 
 void addRayCasting(const Judged& judged) {
@@ -110,24 +128,28 @@ void addRayCasting(const Judged& judged) {
         judged.add({.key = keyOf(std::string("distance map ") + mode.name + " speedup"),
                     .name = std::string("distance map against none, ") + mode.name,
                     .value = speedupOf(map),
+                    .interval = intervalOf(speedupRatio(map)),
                     .goal = goalIf(bone, goal),
                     .from = std::string("times as fast; ") +
                             (map != nullptr ? name(map->options.structure) : "not measured")});
     }
-    const Value bitfield = timeOverDistanceMap(judged, SkipStructure::BitfieldOctree);
-    const Value minMax = timeOverDistanceMap(judged, SkipStructure::MinMaxOctree);
+    const Row* octree = marched(judged, SkipStructure::BitfieldOctree);
+    const Paired bitfield = pairedTimes(octree, distanceMap(judged, kMarchingOnly));
+    const Paired octrees = pairedTimes(octree, marched(judged, SkipStructure::MinMaxOctree));
     judged.add({.key = "bitfield_octree_over_distance_map_time",
                 .name = "bitfield octree against the distance map, marching only",
-                .value = bitfield,
+                .value = valueOf(bitfield),
+                .interval = intervalOf(bitfield),
                 .goal = goalIf(bone, 1.7),
                 .sense = Sense::AtMost,
                 .from = "its time over the map's"});
     judged.add({.key = "bitfield_octree_over_minmax_octree_time",
                 .name = "bitfield octree against the min-max octree, marching only",
-                .value = quotient(bitfield, minMax),
+                .value = valueOf(octrees),
+                .interval = intervalOf(octrees),
                 .goal = goalIf(bone, 1.0),
                 .sense = Sense::AtMost,
-                .from = "as multiples of the distance map's time"});
+                .from = "its time over the other's"});
 }
 
 void addBlocks(const Judged& judged) {
@@ -137,7 +159,7 @@ void addBlocks(const Judged& judged) {
         const bool counted = row != nullptr && row->counters && *row->counters;
         return counted ? Value(static_cast<double>(**row->counters.*counter)) : std::nullopt;
     };
-    const bool gap = judged.volume.input.starts_with("phantom:gap");
+    const bool gap = isOwn(judged.volume) && judged.volume.input.starts_with("phantom:gap");
     const struct {
         const char* name;
         std::int64_t WorkCounters::*counter;
@@ -186,6 +208,7 @@ void addHybrid(const Judged& judged) {
         for (const auto& kind : kinds) {
             const Row* best = fastestHybrid(judged, mode, kind.tightWith, true);
             const Row* none = fastestHybrid(judged, mode, kind.tightWithout, false);
+            const Paired speedup = pairedTimes(none, best);
             const std::string by = best == nullptr
                                        ? "not measured"
                                        : std::string(name(best->options.structure)) + ", " +
@@ -195,7 +218,8 @@ void addHybrid(const Judged& judged) {
                 {.key = keyOf(std::string("hybrid ") + mode.name + " " + kind.key + " speedup"),
                  .name = std::string("hybrid against its own best without, ") + mode.name + ", " +
                          kind.name,
-                 .value = pairedTimes(none, best),
+                 .value = valueOf(speedup),
+                 .interval = intervalOf(speedup),
                  .goal = kind.goal,
                  .from = "times as fast, each at its best ratio; " + by});
         }
@@ -208,7 +232,7 @@ void addMerging(const Judged& judged) {
         for (const Row* row : judged.where(Table::Merge, [edge](const Row& r) {
                  return r.merge && r.options.blockEdgeVoxels == edge && r.options.partitions == 16;
              })) {
-            speedups.push_back(row->merge->speedup);
+            speedups.push_back(row->merge->speedup.median);
         }
         const FrameTimes all = summarise(speedups); // no times, but a median all the same
         const bool any = !speedups.empty();
@@ -220,7 +244,7 @@ void addMerging(const Judged& judged) {
             {.key = "merge_16_speedup_edge_" + std::to_string(edge),
              .name = "merging 16 partitions against rebuilding, blocks of " + std::to_string(edge),
              .value = any ? Value(all.median) : std::nullopt,
-             .goal = goalIf(edge == 4, 10.0),
+             .goal = goalIf(edge == 4 && isOwn(judged.volume), 10.0),
              .from = from});
     }
 }
@@ -239,7 +263,7 @@ void addBuilds(const Judged& judged) {
     judged.add({.key = "bitfield_octree_256_build_ms",
                 .name = "bitfield octree of 256^3, build",
                 .value = built ? Value(summarise(row->build->ms).median) : std::nullopt,
-                .goal = 60.0,
+                .goal = goalIf(isOwn(judged.volume), 60.0),
                 .sense = Sense::AtMost,
                 .from = "ms on the processor, from codes that took " +
                         number(row != nullptr ? row->cube->codesMs : 0.0) +
@@ -249,7 +273,7 @@ void addBuilds(const Judged& judged) {
          .name = "bitfield octree of 256^3, memory",
          .value = built ? Value(static_cast<double>(row->build->memory.gpuBytes) / (2.0 * kVoxels))
                         : std::nullopt,
-         .goal = 0.05,
+         .goal = goalIf(isOwn(judged.volume), 0.05),
          .sense = Sense::AtMost,
          .from = "of a 16-bit volume's"});
 }

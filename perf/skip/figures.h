@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "perf/median_interval.h"
+
 namespace slabcast::skipbench {
 
 struct Row;
@@ -14,11 +16,12 @@ enum class Sense : std::uint8_t { AtLeast, AtMost };
 
 /// What a goal was set for, and what was measured.
 struct Figure {
-    std::string key;             // for programs
-    std::string name;            // for people
-    std::string volume;          // as rows name it
-    std::optional<double> value; // none where its rows were not measured
-    std::optional<double> goal;  // none where none was set for such a volume
+    std::string key;                          // for programs
+    std::string name;                         // for people
+    std::string volume;                       // as rows name it
+    std::optional<double> value;              // none where its rows were not measured
+    std::optional<MedianInterval> interval{}; // of a value that is paired within rounds
+    std::optional<double> goal;               // none where none was set for such a volume
     Sense sense = Sense::AtLeast;
     std::string from; // in words
 
@@ -28,9 +31,9 @@ struct Figure {
 
 const char* name(Sense sense); // ">=" or "<="
 
-/// The figures to reach, each worked out from measured rows. A goal stands only where it is meant
-/// for: skull CT under bone, the gap phantom, or any volume. Contract: rows of a race have as many
-/// samples as its others. Tested by: figures_test.cpp
+/// The figures to reach, each worked out from measured rows. A goal stands only where it was set
+/// for: the project's skull under bone, its gap phantom, or any of its own scenes. Contract: rows
+/// of a race have as many samples as its others. Tested by: figures_test.cpp
 std::vector<Figure> figuresOf(std::span<const VolumeRecord> volumes, std::span<const Row> rows);
 
 /// How many figures have a value and a goal, and how many of these reach it.

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "perf/skip/race.h"
+#include "perf/skip/row_json.h"
 
 namespace slabcast::skipbench {
 
@@ -113,7 +114,7 @@ Result<void> raceSeats(Bench& bench, const std::vector<Seat>& seats, const char*
                               [&](int layers) { return seated(bench, seat, layers, ticket); });
                       })
         .and_then([&](const std::vector<Entrant>& entrants) {
-            return race(bench.stage, entrants, bench.desc.frames, raceMs(bench));
+            return race(bench, entrants, bench.desc.frames, raceMs(bench));
         })
         .map([&](std::vector<Row> rows) { bench.add(std::move(rows)); });
 }
@@ -138,7 +139,8 @@ Result<int> bestLayers(Bench& bench, const Seat& seat, const Mode& mode) {
         if (!entrant) {
             return tl::unexpected(entrant.error());
         }
-        const Result<double> ms = leastMs(bench.stage, *entrant);
+        const Result<double> ms =
+            bench.timed(idOf(entrant->row), [&] { return leastMs(bench.stage, *entrant); });
         if (!ms) {
             return tl::unexpected(ms.error());
         }
@@ -213,7 +215,7 @@ Result<std::vector<Row>> raceRays(Bench& bench, std::span<const Subject> subject
                subjects,
                [&](const Subject& subject) { return ofRays(bench, subject, mode, beginning); })
         .and_then([&](const std::vector<Entrant>& entrants) {
-            return race(bench.stage, entrants, rounds, budgetMs);
+            return race(bench, entrants, rounds, budgetMs);
         });
 }
 

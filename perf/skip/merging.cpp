@@ -8,7 +8,7 @@
 #include "core/skip/occupancy.h"
 #include "core/skip/proximity_cloud.h"
 #include "perf/skip/builds.h"
-#include "perf/skip/paired_ratio.h"
+#include "perf/skip/row_json.h"
 
 namespace slabcast::skipbench {
 
@@ -68,6 +68,30 @@ struct Ways {
     std::vector<std::vector<double>> mergeMs; // of each number of partitions
 };
 
+Json keptOf(const Ways& ways) {
+    Json merges = Json::list();
+    for (const std::vector<double>& ms : ways.mergeMs) {
+        merges.push_back(Json::listOf(ms));
+    }
+    return {{"chebyshev", Json::listOf(ways.chebyshevMs)},
+            {"proximity", Json::listOf(ways.proximityMs)},
+            {"chebyshev_of_ranges", Json::listOf(ways.chebyshevOfRangesMs)},
+            {"proximity_of_ranges", Json::listOf(ways.proximityOfRangesMs)},
+            {"merges", std::move(merges)}};
+}
+
+Ways waysOf(const Json& kept) {
+    Ways ways{numbersOf(kept.at("chebyshev")),
+              numbersOf(kept.at("proximity")),
+              numbersOf(kept.at("chebyshev_of_ranges")),
+              numbersOf(kept.at("proximity_of_ranges")),
+              {}};
+    for (const Json& ms : kept.at("merges")) {
+        ways.mergeMs.push_back(numbersOf(ms));
+    }
+    return ways;
+}
+
 /// What outlives a change of transfer function at one block edge.
 struct Kept {
     int edge = 4;
@@ -108,8 +132,12 @@ Result<Kept> keep(Bench& bench, const Workshop& workshop, const CellVisibility& 
         }
         Row row = bench.row(Table::Partitions, options);
         if (built) {
-            row.partitions = {
-                built->buildMs - built->updateMs, {gpuBytes(*built), hostBytes(*built)}, {}};
+            const Result<double> initMs = bench.timed(
+                idOf(row), [&]() -> Result<double> { return built->buildMs - built->updateMs; });
+            if (!initMs) {
+                return tl::unexpected(initMs.error());
+            }
+            row.partitions = {*initMs, {gpuBytes(*built), hostBytes(*built)}, {}};
             kept.partitioned.push_back(std::move(*built));
         } else {
             row.partitions = {.refused = built.error().detail};
@@ -165,6 +193,35 @@ void addRows(Bench& bench, const Kept& kept, const Transfer& transfer, const Way
     }
 }
 
+/// All rounds under one transfer function, from the store where they are there.
+Result<Ways> waysUnder(const Bench& bench, const Workshop& workshop, const Kept& kept,
+                       const NamedTransfer& transfer) {
+    Row subject = bench.row(Table::Merge, optionsOf(bench, SkipStructure::Chebyshev, kept.edge));
+    subject.transfer = transfer.named;
+    const std::string id = idOf(subject);
+    if (const Json* piece = bench.store.find(id);
+        piece != nullptr && piece->at("merges").size() == kept.partitioned.size()) {
+        return waysOf(*piece);
+    }
+    const Result<Scene> scene =
+        bench.stage.variation(transfer.tf, {.structure = SkipStructure::None});
+    if (!scene) {
+        return tl::unexpected(scene.error());
+    }
+    const CellVisibility visibility = workshop.visibilityUnder(*scene);
+    Ways ways;
+    ways.mergeMs.resize(kept.partitioned.size());
+    const int rounds = bench.desc.quick ? kFewestFrames : bench.desc.frames;
+    for (int round = 0; round < rounds; ++round) {
+        if (Result<void> done = goAllWays(bench, workshop, kept, visibility, ways); !done) {
+            return tl::unexpected(done.error());
+        }
+    }
+    Json piece = keptOf(ways);
+    piece["id"] = id;
+    return bench.store.add(std::move(piece)).map([&] { return std::move(ways); });
+}
+
 Result<void> measureEdge(Bench& bench, const Workshop& workshop,
                          const std::vector<NamedTransfer>& transfers, int edge) {
     const Result<Kept> kept =
@@ -175,21 +232,11 @@ Result<void> measureEdge(Bench& bench, const Workshop& workshop,
     for (const NamedTransfer& transfer : transfers) {
         bench.show(std::string(transfer.named.key) + " at " + std::to_string(edge) +
                    "-voxel blocks");
-        const Result<Scene> scene =
-            bench.stage.variation(transfer.tf, {.structure = SkipStructure::None});
-        if (!scene) {
-            return tl::unexpected(scene.error());
+        const Result<Ways> ways = waysUnder(bench, workshop, *kept, transfer);
+        if (!ways) {
+            return tl::unexpected(ways.error());
         }
-        const CellVisibility visibility = workshop.visibilityUnder(*scene);
-        Ways ways;
-        ways.mergeMs.resize(kept->partitioned.size());
-        const int rounds = bench.desc.quick ? kFewestFrames : bench.desc.frames;
-        for (int round = 0; round < rounds; ++round) {
-            if (Result<void> done = goAllWays(bench, workshop, *kept, visibility, ways); !done) {
-                return done;
-            }
-        }
-        addRows(bench, *kept, transfer.named, ways);
+        addRows(bench, *kept, transfer.named, *ways);
     }
     return {};
 }

@@ -11,6 +11,8 @@ class Stage;
 
 namespace slabcast::skipbench {
 
+struct Bench;
+
 /// One way to draw what others draw too.
 struct Entrant {
     const Scene* scene = nullptr; // a variation of the stage's, with its structure
@@ -39,12 +41,10 @@ Result<std::vector<Entrant>> entrantsOf(const Items& items, Enter enter) {
 /// it longer. For choices among many, before a race decides between few.
 Result<double> leastMs(Stage& stage, const Entrant& entrant);
 
-/// All entrants on equal terms: in every round each draws one frame of the same view, after one
-/// that is not counted, in an order that is shuffled anew, so that the drift of a busy machine hits
-/// all alike; the views of the rounds go once around. At most `rounds`, fewer where they would take
-/// over `budgetMs`, kFewestFrames at least. Gives the rows with their part of the race (its
-/// speed-up is the median over the rounds, each with itself) and the counters of the first view.
-Result<std::vector<Row>> race(Stage& stage, const std::vector<Entrant>& entrants, int rounds,
+/// A race (perf/race.h) of all entrants in at most `rounds`, and as many as fit into `budgetMs`.
+/// Gives the rows with their part of it (how many times as fast as the first) and the counters of
+/// the first view.
+Result<std::vector<Row>> race(Bench& bench, const std::vector<Entrant>& entrants, int rounds,
                               double budgetMs);
 
 } // namespace slabcast::skipbench

@@ -8,6 +8,7 @@
 #include "core/plan/frame_plan.h"
 #include "core/skip/skip_structure.h"
 #include "core/volume/texels.h"
+#include "perf/paired_ratio.h"
 #include "perf/volume_info.h"
 
 namespace slabcast::skipbench {
@@ -50,7 +51,7 @@ struct Cube {
 /// One entrant's part of a race.
 struct Raced {
     std::vector<double> samples; // ms, one of each round
-    double speedup = 0.0;        // times as fast as the first entrant
+    PairedRatio speedup{};       // times as fast as the first entrant
 };
 
 struct Memory {
@@ -87,8 +88,8 @@ struct Rebuild {
 /// Partitioned maps merged again; how many times as fast as either way to rebuild a Chebyshev map.
 struct Merge {
     std::vector<double> ms;
-    double speedup = 0.0;
-    double speedupOfRanges = 0.0;
+    PairedRatio speedup{};
+    PairedRatio speedupOfRanges{};
 };
 
 /// A row of any table. What its table does not have is not there.
@@ -111,6 +112,9 @@ struct Row {
     std::optional<Merge> merge{};
 };
 
+/// Scenes that goals were set for: the project's own.
+enum class OwnScene : std::uint8_t { None, Phantom, Skull };
+
 /// A volume that rows are of.
 struct VolumeRecord {
     std::string name;  // as rows have it
@@ -120,6 +124,7 @@ struct VolumeRecord {
     TexelFormat texelFormat = TexelFormat::R8;
     std::int64_t texelBytes = 0;
     double codesMs = 0.0; // of the codes that all builds share
+    OwnScene own = OwnScene::None;
 };
 
 } // namespace slabcast::skipbench

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "perf/skip/race.h"
+#include "perf/skip/row_json.h"
 #include "perf/skip/search_grid.h"
 
 namespace slabcast::skipbench {
@@ -17,6 +18,19 @@ struct Tried {
     double ms = 0.0;
 };
 
+/// A few frames of ray casting; a structure that was tried already is not built again.
+Result<double> triedMs(Bench& bench, const SkipOptions& options) {
+    const Row row = bench.row(Table::Search, options);
+    return bench.timed(idOf(row), [&]() -> Result<double> {
+        const Result<Scene> scene = bench.stage.variation(bench.stage.scene().look().tf, options);
+        if (!scene) {
+            return tl::unexpected(scene.error());
+        }
+        return entrantOf(bench.stage, *scene, rayCasting(bench.desc, kMarchingOnly), row)
+            .and_then([&](const Entrant& entrant) { return leastMs(bench.stage, entrant); });
+    });
+}
+
 /// The fastest few of one structure, on the picture as it is.
 Result<std::vector<Tried>> triedOf(Bench& bench, SkipStructure structure) {
     const std::vector<SkipOptions> grid =
@@ -25,13 +39,7 @@ Result<std::vector<Tried>> triedOf(Bench& bench, SkipStructure structure) {
     for (const SkipOptions& options : grid) {
         bench.show(std::string("searching ") + name(structure) + " " +
                    std::to_string(tried.size() + 1) + " of " + std::to_string(grid.size()));
-        const Result<Scene> scene = bench.stage.variation(bench.stage.scene().look().tf, options);
-        if (!scene) {
-            return tl::unexpected(scene.error());
-        }
-        const Result<double> ms =
-            entrantOf(bench.stage, *scene, rayCasting(bench.desc, kMarchingOnly), {})
-                .and_then([&](const Entrant& entrant) { return leastMs(bench.stage, entrant); });
+        const Result<double> ms = triedMs(bench, options);
         if (!ms) {
             return tl::unexpected(ms.error());
         }
@@ -66,7 +74,7 @@ Result<SkipOptions> winnerOf(Bench& bench, const std::vector<Tried>& finalists, 
     }
     const auto best =
         std::max_element(rows->begin() + 1, rows->end(), [](const Row& a, const Row& b) {
-            return a.raced->speedup < b.raced->speedup;
+            return a.raced->speedup.median < b.raced->speedup.median;
         });
     const SkipOptions winner = best->options;
     bench.add(std::move(*rows));

@@ -40,7 +40,7 @@ Result<std::vector<Row>> measureSize(Bench& bench, int edge) {
         beginning.cube->codesMs = workshop.codesMs();
         Result<std::vector<Row>> built =
             buildRows(workshop, workshop.visibilityUnder(bench.stage.scene()), structures, kBuilds,
-                      beginning);
+                      beginning, bench.store);
         if (!built) {
             return built;
         }
@@ -56,7 +56,8 @@ Result<std::vector<Row>> measureSize(Bench& bench, int edge) {
 } // namespace
 
 Result<std::vector<Row>> measureSizes(const Desc& desc, const StageDesc& opened, const Host& host,
-                                      const VolumeRecord& volume, ProgressLine& progress) {
+                                      const VolumeRecord& volume, ProgressLine& progress,
+                                      RunStore& store) {
     std::vector<Row> rows;
     for (const int edge : desc.sizes) {
         progress.show(volume.name + ": resampled to " + std::to_string(edge) + "^3");
@@ -64,7 +65,7 @@ Result<std::vector<Row>> measureSizes(const Desc& desc, const StageDesc& opened,
         if (!stage) {
             return tl::unexpected(stage.error());
         }
-        Bench bench{*stage, desc, volume.name, progress, std::move(rows)};
+        Bench bench{*stage, desc, volume.name, progress, store, std::move(rows)};
         Result<std::vector<Row>> measured = measureSize(bench, edge);
         if (!measured) {
             return measured;

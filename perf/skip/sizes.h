@@ -8,6 +8,7 @@ namespace slabcast::skipbench {
 /// usual parameters: what it takes to build, to hold, and a frame of ray casting, marching only.
 /// Rows of the table Sizes. Opens a stage of its own for each, as `opened` says.
 Result<std::vector<Row>> measureSizes(const Desc& desc, const StageDesc& opened, const Host& host,
-                                      const VolumeRecord& volume, ProgressLine& progress);
+                                      const VolumeRecord& volume, ProgressLine& progress,
+                                      RunStore& store);
 
 } // namespace slabcast::skipbench

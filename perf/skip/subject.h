@@ -1,9 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "perf/run_store.h"
 #include "perf/skip/bench.h"
 #include "perf/skip/row.h"
 
@@ -15,12 +17,16 @@ struct Bench {
     const Desc& desc;
     std::string volume; // as its rows name it
     ProgressLine& progress;
+    RunStore& store;         // what is finished already
     std::vector<Row> rows{}; // of all tables
 
     Row row(Table table, const SkipOptions& options) const {
         return {.table = table, .volume = volume, .options = options};
     }
     void add(std::vector<Row> more);
+    /// A time, ms, that `measure` finds out unless the store has it.
+    Result<double> timed(const std::string& id,
+                         const std::function<Result<double>()>& measure) const;
     void show(const std::string& step) const { progress.show(volume + ": " + step); }
 };
 

@@ -11,15 +11,6 @@
 
 namespace slabcast::stability {
 
-namespace {
-
-/// NaN stays.
-double largerOf(double largest, double next) {
-    return next <= largest ? largest : next;
-}
-
-} // namespace
-
 std::span<const Method> methods() {
     static constexpr Method kMethods[] = {
         {"slicing, rgba8", 1, TargetFormat::Rgba8},
@@ -86,6 +77,21 @@ Result<Drawn> Bench::draw(const Scene& scene, const FramePlan& plan, const View&
     return Drawn{plan, {size, target_.read()}};
 }
 
+Result<Picture> Bench::drawFinely(const Scene& scene, const FramePlan& plan, const View& view,
+                                  glm::ivec2 size) {
+    SLABCAST_EXPECTS(plan.target == TargetFormat::Rgba16f, plan.target);
+    if (caps().floatBlend) {
+        return drawInFloat32(renderer_, scene, plan, view, size);
+    }
+    return draw(scene, plan, view, size).map([](Drawn&& drawn) {
+        return std::move(drawn.picture);
+    });
+}
+
+Bench::FinestTarget Bench::finest() const {
+    return caps().floatBlend ? FinestTarget{"float32", 0x1p-24} : FinestTarget{"rgba16f", 0x1p-11};
+}
+
 Result<WorkCounters> Bench::countWork(const Scene& scene, const FramePlan& plan, const View& view,
                                       glm::ivec2 size) {
     const ViewTarget where{view, 0, {0, 0, size.x, size.y}};
@@ -133,6 +139,27 @@ void Bench::recordFailure(Case unmeasured, const Error& error) {
     unmeasured.measured = std::nan("");
     unmeasured.failure = error.detail;
     record(std::move(unmeasured));
+}
+
+Result<Picture> drawInFloat32(Renderer& renderer, const Scene& scene, const FramePlan& plan,
+                              const View& view, glm::ivec2 size) {
+    gl::ColorTargets target;
+    if (Result<void> made = target.resize(size.x, size.y, {GL_RGBA32F}); !made) {
+        return tl::unexpected(made.error());
+    }
+    target.begin();
+    const ViewTarget where{view, target.framebuffer(), {0, 0, size.x, size.y}};
+    if (Result<void> ready = renderer.prepare(scene, plan, {&where, 1}); !ready) {
+        return tl::unexpected(ready.error());
+    }
+    if (Result<void> done = renderer.draw(scene, plan, {&where, 1}); !done) {
+        return tl::unexpected(done.error());
+    }
+    return Picture{size, target.read()};
+}
+
+double largerOf(double largest, double next) {
+    return next <= largest ? largest : next;
 }
 
 double largestDifference(const Picture& picture, std::span<const glm::dvec4> reference) {
@@ -184,18 +211,6 @@ double shareOfPixelBound(const Scene& scene, const Drawn& drawn, const View& vie
         }
     });
     return std::accumulate(worstOfRow.begin(), worstOfRow.end(), 0.0, largerOf);
-}
-
-std::span<const Family> families() {
-    static constexpr Family kFamilies[] = {
-        {"stiff", "Stiff transfer functions and data", stiffCases},
-        {"extreme-data", "Extreme data", extremeDataCases},
-        {"extreme-views", "Extreme views", extremeViewCases},
-        {"extreme-plans", "Extreme plans", extremePlanCases},
-        {"in-time", "Swimming in time", inTimeCases},
-        {"half-precision", "Half precision", halfPrecisionCases},
-        {"left-out", "What a scene does not need", leftOutCases}};
-    return kFamilies;
 }
 
 } // namespace slabcast::stability

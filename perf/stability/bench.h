@@ -11,6 +11,7 @@
 #include "core/scene/texel_format.h"
 #include "perf/stability/appearance.h"
 #include "perf/stability/case.h"
+#include "perf/stability/families.h"
 
 namespace slabcast::stability {
 
@@ -56,6 +57,15 @@ public:
                        glm::ivec2 size);
     Result<Drawn> draw(const Scene& scene, const FramePlan& plan, const View& view,
                        glm::ivec2 size);
+    /// Into float32, so that no target's rounding hides what was computed; into fp16 where a device
+    /// does not blend that. Contract: a plan for fp16.
+    struct FinestTarget {
+        const char* name;
+        double rounding; // of values up to 1
+    };
+    FinestTarget finest() const;
+    Result<Picture> drawFinely(const Scene& scene, const FramePlan& plan, const View& view,
+                               glm::ivec2 size);
     Result<WorkCounters> countWork(const Scene& scene, const FramePlan& plan, const View& view,
                                    glm::ivec2 size);
 
@@ -87,8 +97,14 @@ private:
     std::function<void(const Case&)> watcher_;
 };
 
+/// Into a float32 target of its own. Contract: the device blends them.
+Result<Picture> drawInFloat32(Renderer& renderer, const Scene& scene, const FramePlan& plan,
+                              const View& view, glm::ivec2 size);
+
 // Quantities that cases measure.
 
+/// The greater of two; NaN stays.
+double largerOf(double largest, double next);
 /// Largest difference of any component. NaN where there is one.
 double largestDifference(const Picture& picture, std::span<const glm::dvec4> reference);
 
@@ -101,21 +117,5 @@ std::vector<glm::dvec4> continuousPicture(const Scene& scene, const View& view, 
 double shareOfPixelBound(const Scene& scene, const Drawn& drawn, const View& view);
 /// The reason that goes with it.
 extern const char* const kPixelBoundReason;
-
-/// Families of cases, each in a file of its own name.
-void stiffCases(Bench& bench);
-void extremeDataCases(Bench& bench);
-void extremeViewCases(Bench& bench);
-void extremePlanCases(Bench& bench);
-void inTimeCases(Bench& bench);
-void halfPrecisionCases(Bench& bench);
-void leftOutCases(Bench& bench);
-
-struct Family {
-    const char* name;
-    const char* title;
-    void (*run)(Bench& bench);
-};
-std::span<const Family> families();
 
 } // namespace slabcast::stability

@@ -34,6 +34,17 @@ struct Series {
     double y = 0.0;
     std::string xLabel;
     std::string yLabel;
+    std::optional<double> bound{}; // of y, where a plot is to show it
+};
+
+/// What one input's last digit does to a picture: a line of the table of condition numbers.
+struct Condition {
+    std::string scene;
+    std::string input;
+    double perturbation = 0.0;   // relative, of the input
+    double largestChange = 0.0;  // of any component of any pixel, of full scale
+    std::optional<double> limit; // of change / perturbation, by derivatives; none: past a step
+    double jumpingShare = 0.0;   // of the pixels that the volume covers: past what derivatives say
 };
 
 /// A line of the table of what a plan left out, with GL's word for it.
@@ -62,6 +73,7 @@ struct Case {
     std::vector<NamedPicture> pictures{}; // few: what the page shows beside the figures
     std::optional<Series> series{};
     std::optional<LeftOut> leftOut{};
+    std::optional<Condition> condition{};
 
     bool pass() const { return failure.empty() && measured <= bound; } // false for NaN
     /// Whether a picture could exceed the bound at all.

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/gl/api.h"
 #include "perf/stability/bench.h"
 #include "perf/stability/volumes.h"
 
@@ -106,24 +105,6 @@ constexpr Group kGroups[] = {
     {"declared mediump (colour and light)", kHalfColor + kHalfLight, true, unseenBound,
      "what the shaders declare mediump must stay below half a step of 8 bits"}};
 
-/// Into float32, so that the target's own rounding does not hide the segment's.
-Result<Picture> drawn(Renderer& renderer, const Scene& scene, const FramePlan& plan,
-                      const View& view) {
-    gl::ColorTargets target;
-    if (Result<void> made = target.resize(kSize.x, kSize.y, {GL_RGBA32F}); !made) {
-        return tl::unexpected(made.error());
-    }
-    target.begin();
-    const ViewTarget where{view, target.framebuffer(), {0, 0, kSize.x, kSize.y}};
-    if (Result<void> ready = renderer.prepare(scene, plan, {&where, 1}); !ready) {
-        return tl::unexpected(ready.error());
-    }
-    if (Result<void> done = renderer.draw(scene, plan, {&where, 1}); !done) {
-        return tl::unexpected(done.error());
-    }
-    return Picture{kSize, target.read()};
-}
-
 /// `rounding`: whose programs round the group.
 void measure(Bench& bench, Renderer& rounding, const Scene& scene, const HalfScene& setup,
              const Group& group, const Method& method) {
@@ -142,8 +123,8 @@ void measure(Bench& bench, Renderer& rounding, const Scene& scene, const HalfSce
     if (!plan) {
         return bench.recordFailure(result, plan.error());
     }
-    const Result<Picture> exact = drawn(bench.renderer(), scene, *plan, view);
-    const Result<Picture> half = drawn(rounding, scene, *plan, view);
+    const Result<Picture> exact = drawInFloat32(bench.renderer(), scene, *plan, view, kSize);
+    const Result<Picture> half = drawInFloat32(rounding, scene, *plan, view, kSize);
     if (!exact || !half) {
         return bench.recordFailure(result, exact ? half.error() : exact.error());
     }

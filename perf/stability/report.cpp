@@ -13,9 +13,19 @@ namespace slabcast::stability {
 
 namespace {
 
-constexpr CsvColumn kColumns[] = {
-    {"family", "/family"},     {"name", "/name"}, {"quantity", "/quantity"}, {"bound", "/bound"},
-    {"measured", "/measured"}, {"pass", "/pass"}, {"failure", "/failure"},   {"reason", "/reason"}};
+constexpr CsvColumn kColumns[] = {{"family", "/family"},
+                                  {"name", "/name"},
+                                  {"quantity", "/quantity"},
+                                  {"bound", "/bound"},
+                                  {"measured", "/measured"},
+                                  {"pass", "/pass"},
+                                  {"failure", "/failure"},
+                                  {"perturbation", "/condition/perturbation"},
+                                  {"largest_change", "/condition/largest_change"},
+                                  {"condition_number", "/condition/condition_number"},
+                                  {"limit", "/condition/limit"},
+                                  {"jumping_share", "/condition/jumping_share"},
+                                  {"reason", "/reason"}};
 
 /// JSON knows neither NaN nor infinity.
 Json finite(double value) {
@@ -31,7 +41,20 @@ Json toJson(const Series& series) {
     if (!series.panel.empty()) {
         result["panel"] = series.panel;
     }
+    if (series.bound) {
+        result["bound"] = finite(*series.bound);
+    }
     return result;
+}
+
+Json toJson(const Condition& condition) {
+    return {{"scene", condition.scene},
+            {"input", condition.input},
+            {"perturbation", condition.perturbation},
+            {"largest_change", finite(condition.largestChange)},
+            {"condition_number", finite(condition.largestChange / condition.perturbation)},
+            {"limit", condition.limit ? finite(*condition.limit) : Json()},
+            {"jumping_share", condition.jumpingShare}};
 }
 
 Json toJson(const LeftOut& leftOut) {
@@ -83,6 +106,9 @@ Result<Json> written(const Case& c, ReportFolder& folder) {
     }
     if (c.leftOut) {
         result["left_out"] = toJson(*c.leftOut);
+    }
+    if (c.condition) {
+        result["condition"] = toJson(*c.condition);
     }
     for (std::size_t k = 0; k < c.pictures.size(); ++k) {
         const std::string file = pictureFile(c, k);

@@ -3,9 +3,13 @@
 #include <algorithm>
 
 #include "core/plan/settings_table.h"
-#include "perf/csv.h"
+#include "perf/error/scene_key.h"
 #include "perf/json.h"
 #include "perf/number.h"
+#include "perf/race.h"
+#include "perf/run_store.h"
+#include "perf/settings_json.h"
+#include "perf/sweep/sweep_table.h"
 
 namespace slabcast {
 
@@ -29,14 +33,17 @@ std::vector<Series> seriesOf(const Settings& settings, SkipStructure built) {
     return series;
 }
 
-/// The frames of one turn; the first, which warms up, gives the thumbnail.
-struct Turn {
-    FrameTimes times;
-    double firstMs = 0.0;
-};
+std::string twoDigits(std::size_t index) {
+    return (index < 10 ? "0" : "") + std::to_string(index);
+}
 
-Result<Turn> drawTurn(Stage& stage, const FramePlan& plan, int frames,
-                      const std::string& thumbnailFile, ReportFolder& folder) {
+/// What is said of a row before it races: its plan, its first frame's time, work and thumbnail.
+Result<Json> described(Stage& stage, const FramePlan& plan, const std::string& thumbnailFile,
+                       ReportFolder& folder) {
+    if (Result<void> ready = stage.prepare(plan); !ready) {
+        return tl::unexpected(ready.error());
+    }
+    // Before any other is drawn: what drivers put off until then is this frame's.
     const Result<double> firstMs = stage.drawTimed(plan, 0.0);
     if (!firstMs) {
         return tl::unexpected(firstMs.error());
@@ -46,122 +53,153 @@ Result<Turn> drawTurn(Stage& stage, const FramePlan& plan, int frames,
         !saved) {
         return tl::unexpected(saved.error());
     }
-    std::vector<double> times;
-    for (int k = 0; k < frames; ++k) {
-        const Result<double> ms = stage.drawTimed(plan, 360.0 * k / frames);
-        if (!ms) {
-            return tl::unexpected(ms.error());
-        }
-        times.push_back(*ms);
-    }
-    return Turn{summarise(std::move(times)), *firstMs};
+    return Json{{"label", std::to_string(plan.planes) + "x" + std::to_string(plan.layersPerPlane)},
+                {"classify", name(plan.variant.classification)},
+                {"termination",
+                 plan.variant.terminates ? fixed(plan.terminationAlpha, 4) : std::string("off")},
+                {"lattice", name(plan.lattice.kind)},
+                {"jitter", plan.lattice.jittered},
+                {"planes", plan.planes},
+                {"layers_per_plane", plan.layersPerPlane},
+                {"form", plan.variant.unroll > 0 ? "unrolled" : "loop"},
+                {"skip", name(plan.skip)},
+                {"tighten", plan.tighten},
+                {"counters", toJson(stage.countWork(plan))},
+                {"compile_ms", stage.renderer().compileMs(plan.variant)},
+                {"first_frame_ms", *firstMs},
+                {"variant", name(plan.variant)},
+                {"thumbnail", thumbnailFile}};
 }
 
-/// One row: plan, frames of one turn, work, thumbnail.
-Result<Json> measureRow(Stage& stage, const Settings& settings, int frames,
-                        const std::string& thumbnailFile, ReportFolder& folder) {
-    const Result<FramePlan> plan = stage.plan(settings);
-    if (!plan) {
-        return tl::unexpected(plan.error());
-    }
-    if (Result<void> ready = stage.prepare(*plan); !ready) {
-        return tl::unexpected(ready.error());
-    }
-    const Result<Turn> turn = drawTurn(stage, *plan, frames, thumbnailFile, folder);
-    if (!turn) {
-        return tl::unexpected(turn.error());
-    }
-    const bool terminates = plan->variant.terminates;
-    // Drivers put off much of the compiling until a program is first drawn with.
-    const double compileMs = stage.renderer().compileMs(plan->variant) +
-                             std::max(0.0, turn->firstMs - turn->times.median);
-    return Json{
-        {"label", std::to_string(plan->planes) + "x" + std::to_string(plan->layersPerPlane)},
-        {"classification", name(plan->variant.classification)},
-        {"termination", terminates ? fixed(plan->terminationAlpha, 4) : "off"},
-        {"lattice", name(plan->lattice.kind)},
-        {"jitter", plan->lattice.jittered},
-        {"planes", plan->planes},
-        {"layers_per_plane", plan->layersPerPlane},
-        {"form", plan->variant.unroll > 0 ? "unrolled" : "loop"},
-        {"skip", name(plan->skip)},
-        {"tighten", plan->tighten},
-        {"frame_ms", toJson(turn->times)},
-        {"counters", toJson(stage.countWork(*plan))},
-        {"compile_ms", compileMs},
-        {"variant", name(plan->variant)},
-        {"thumbnail", thumbnailFile}};
-}
-
-Json conditions(const Stage& stage, int frames) {
+Json conditions(const Stage& stage, int rounds) {
     const StageDesc& o = stage.desc();
     const Settings& s = o.settings;
     const SceneFacts facts = stage.scene().facts();
     const int total = totalLayers(s, facts);
-    return {{"size", Json::list({o.size.x, o.size.y})},
-            {"camera", toJson(o.camera)},
-            {"fov_degrees", o.fovDegrees},
-            {"transfer_function", stage.scene().look().tf.name},
-            {"classification", name(s.classification)},
-            {"space", name(s.space)},
-            {"target", name(s.target)},
-            {"shade", get(s, "shade")},
-            {"termination", s.termination ? fixed(*s.termination, 4) : "off"},
-            {"lattice", name(s.lattice)},
-            {"layer_spacing_mm", s.totalLayers ? 2.0 * facts.sphere.radiusMm / total
-                                               : s.layerSpacingVoxels * facts.smallestVoxelEdgeMm},
-            {"total_layers", total},
-            {"tighten", s.tighten},
-            {"frames_per_row", frames},
-            {"views", o.stereoIpdMm ? 2 : 1}};
+    Json all = conditionsOf(o);
+    all.update(
+        {{"transfer_function", stage.scene().look().tf.name},
+         {"layer_spacing_mm", s.totalLayers ? 2.0 * facts.sphere.radiusMm / total
+                                            : s.layerSpacingVoxels * facts.smallestVoxelEdgeMm},
+         {"total_layers", total},
+         {"rounds", rounds},
+         {"views", o.stereoIpdMm ? 2 : 1}});
+    return all;
 }
 
 /// The part of the report that is the same for all rows; taken last, when memory has seen its peak.
-Json header(const Stage& stage, int frames, const RunInfo& run) {
-    const GpuMemory gpu = stage.renderer().gpuMemory();
-    const BuiltSkip& skip = stage.scene().skip();
+Json header(const Stage& stage, int rounds, const RunInfo& run) {
     Json result = reportHeader(run, stage);
-    result["conditions"] = conditions(stage, frames);
-    result["memory"] = {{"peak_host_bytes", run.peakHostBytes ? run.peakHostBytes() : 0},
-                        {"volume_bytes", stage.info().bytes},
-                        {"texture_bytes", gpu.volumeBytes},
-                        {"skip_bytes", gpuBytes(skip)}};
-    if (skip.exists()) {
-        result["skip_build"] = {{"structure", name(skip.options.structure)},
-                                {"block_edge", skip.options.blockEdgeVoxels},
-                                {"builder", skip.onGpu ? "gpu" : "cpu"},
-                                {"ms", skip.buildMs},
-                                {"occupied_fraction", skip.occupiedFraction}};
-    }
+    result.update({{"conditions", conditions(stage, rounds)},
+                   {"memory", memoryOf(stage.renderer(), run)},
+                   {"skip", toJson(stage.scene().skip())}});
     return result;
 }
 
-constexpr CsvColumn kColumns[] = {{"planes", "/planes"},
-                                  {"layers_per_plane", "/layers_per_plane"},
-                                  {"form", "/form"},
-                                  {"skip", "/skip"},
-                                  {"tighten", "/tighten"},
-                                  {"classification", "/classification"},
-                                  {"termination", "/termination"},
-                                  {"lattice", "/lattice"},
-                                  {"jitter", "/jitter"},
-                                  {"variant", "/variant"},
-                                  {"compile_ms", "/compile_ms"}};
-
-std::string twoDigits(std::size_t index) {
-    return (index < 10 ? "0" : "") + std::to_string(index);
+/// All that a row depends on, and which rows there are.
+Json keyOf(const Stage& stage, const SweepDesc& desc, const RunInfo& run) {
+    const Scene& scene = stage.scene();
+    const StageDesc& o = stage.desc();
+    const Texels& texels = scene.texels();
+    Json key = conditionsOf(o);
+    key.update(
+        {{"commit", run.commit},
+         {"device", toJson(stage.caps())},
+         {"voxels", fingerprint(texels.data)},
+         {"texels", Json::list({name(texels.format), texels.valueScale, texels.valueBias})},
+         {"placement", placementKey(scene.geometry())},
+         {"transfer_function", transferKey(scene.look().tf)},
+         {"stereo", o.stereoIpdMm ? Json(*o.stereoIpdMm) : Json()},
+         {"background",
+          o.background ? Json::list({o.background->x, o.background->y, o.background->z}) : Json()},
+         {"layers_per_plane", Json::listOf(desc.layersPerPlane)},
+         {"frames", desc.rounds}});
+    return key;
 }
+
+/// The rows of a sweep, as they are planned, described and raced. Borrows all.
+class SweepRun {
+public:
+    SweepRun(Stage& stage, const SweepDesc& desc, ReportFolder& folder, RunStore& store)
+        : stage_(stage), desc_(desc), folder_(folder), store_(store), progress_(stage.watcher()) {}
+
+    /// The rows of the report.
+    Result<Json> measure(const std::vector<SweepRow>& rows) {
+        return describe(rows).and_then([&](Json described) { return timed(std::move(described)); });
+    }
+
+private:
+    Result<Json> describe(const std::vector<SweepRow>& rows) {
+        Json all = Json::list();
+        for (const SweepRow& row : rows) {
+            const Result<FramePlan> plan = stage_.plan(row.settings);
+            if (!plan) {
+                return tl::unexpected(plan.error());
+            }
+            const Result<Json> one = rowOf(*plan, all.size(), rows.size());
+            if (!one) {
+                return one;
+            }
+            plans_.push_back(*plan);
+            places_.push_back({row.series, plan->layersPerPlane});
+            all.push_back(one->at("row"));
+        }
+        return all;
+    }
+
+    /// From the store, or as it is.
+    Result<Json> rowOf(const FramePlan& plan, std::size_t index, std::size_t count) {
+        const std::string id = "row " + twoDigits(index);
+        const std::string picture = std::string(kSweepThumbnails) + "/" + twoDigits(index) + ".png";
+        if (const Json* kept = store_.find(id);
+            kept != nullptr && kept->at("row").isObject() && folder_.has(picture)) {
+            return *kept;
+        }
+        progress_.show("row " + std::to_string(index + 1) + " of " + std::to_string(count) + ": " +
+                       std::to_string(plan.layersPerPlane) + " layers per plane, skip " +
+                       name(plan.skip) + ", " + (plan.tighten ? "tight planes" : "10-gons"));
+        return described(stage_, plan, picture, folder_).and_then([&](Json row) -> Result<Json> {
+            Json piece = {{"id", id}, {"row", std::move(row)}};
+            return store_.add(piece).map([&] { return std::move(piece); });
+        });
+    }
+
+    Result<Json> timed(Json rows) {
+        std::vector<Racer> racers;
+        for (const FramePlan& plan : plans_) {
+            racers.push_back({.plan = &plan});
+        }
+        const auto show = [this](int round, int rounds) {
+            progress_.show("round " + std::to_string(round + 1) + " of " + std::to_string(rounds) +
+                           ": a frame of every row");
+        };
+        return race(stage_, racers, {.id = "race", .rounds = desc_.rounds, .show = show}, store_)
+            .map([&](const Laps& laps) {
+                addTimes(rows, places_, laps);
+                return std::move(rows);
+            });
+    }
+
+    Stage& stage_;
+    const SweepDesc& desc_;
+    ReportFolder& folder_;
+    RunStore& store_;
+    ProgressLine progress_;
+    std::vector<FramePlan> plans_;
+    std::vector<SweepPlace> places_;
+};
 
 } // namespace
 
-std::vector<Settings> sweepRows(const Settings& settings, const SceneFacts& facts,
+std::vector<SweepRow> sweepRows(const Settings& settings, const SceneFacts& facts,
                                 std::vector<int> lengths) {
     const int total = totalLayers(settings, facts);
     if (lengths.empty()) {
         lengths.assign(kUnrollLengths.begin(), kUnrollLengths.end());
         lengths.push_back(0);
     }
-    std::vector<Settings> rows;
+    std::vector<SweepRow> rows;
+    int place = 0;
     for (const Series& series : seriesOf(settings, facts.skip.structure)) {
         for (const int length : lengths) {
             Settings row = settings;
@@ -170,34 +208,32 @@ std::vector<Settings> sweepRows(const Settings& settings, const SceneFacts& fact
             row.tighten = series.tighten;
             // A list of lengths reaches beyond what can be written out: those rows are loops.
             row.form = unrollLengthFor(*row.layersPerPlane) == 0 ? SegmentForm::Loop : row.form;
-            rows.push_back(row);
+            rows.push_back({row, place});
         }
+        ++place;
     }
     return rows;
 }
 
 Result<void> sweep(Stage& stage, const SweepDesc& desc, const RunInfo& run, ReportFolder& folder) {
-    const std::vector<Settings> plans =
-        sweepRows(stage.desc().settings, stage.scene().facts(), desc.layersPerPlane);
-    Json rows = Json::list();
-    ProgressLine progress(stage.watcher());
-    for (const Settings& settings : plans) {
-        progress.show(
-            "row " + std::to_string(rows.size() + 1) + " of " + std::to_string(plans.size()) +
-            ": " + std::to_string(*settings.layersPerPlane) + " layers per plane, skip " +
-            name(*settings.skip) + ", " + (settings.tighten ? "tight planes" : "10-gons"));
-        Result<Json> row = measureRow(
-            stage, settings, desc.frames,
-            std::string(kSweepThumbnails) + "/" + twoDigits(rows.size()) + ".png", folder);
-        if (!row) {
-            return tl::unexpected(row.error());
-        }
-        rows.push_back(std::move(*row));
+    SLABCAST_EXPECTS(desc.rounds >= 1, desc.rounds);
+    Result<RunStore> store =
+        RunStore::open(folder, {"sweep", stage.info().name, run.command, keyOf(stage, desc, run)},
+                       stage.watcher());
+    if (!store) {
+        return tl::unexpected(store.error());
     }
-    Json report = header(stage, desc.frames, run);
-    report["rows"] = std::move(rows);
-    return folder.write("sweep.csv", csvOf(report["rows"], columnsOf({kColumns, kMeasuredColumns})))
-        .and_then([&] { return folder.write("sweep.json", report.dump(2) + "\n"); });
+    const Result<Json> rows =
+        SweepRun(stage, desc, folder, *store)
+            .measure(sweepRows(stage.desc().settings, stage.scene().facts(), desc.layersPerPlane));
+    if (!rows) {
+        return tl::unexpected(rows.error());
+    }
+    Json report = header(stage, desc.rounds, run);
+    report["rows"] = *rows;
+    return folder.write("sweep.csv", sweepCsv(*rows)).and_then([&] {
+        return folder.write("sweep.json", report.dump(2) + "\n");
+    });
 }
 
 } // namespace slabcast

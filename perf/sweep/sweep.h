@@ -11,20 +11,27 @@ namespace slabcast {
 struct SweepDesc {
     std::vector<int> layersPerPlane; // 0 stands for all: ray casting; empty: the lengths that can
                                      // be written out, and 0
-    int frames = 12;                 // of one turn, per row
+    int rounds = 12;                 // of one turn, in each of which every row draws a frame
 };
 
 /// Folders that the report's pictures are in, to be there before.
 inline constexpr const char* kSweepThumbnails = "thumbnails";
 
 /// Measures every ratio under the stage's settings: the plain stack, then what skipping and tight
-/// planes add to it, a turn of the volume each. Writes sweep.json and sweep.csv, and a thumbnail
-/// per row. Fails: as Stage::prepare(), Stage::drawTimed() and the folder.
-/// Tested by: cli_usage_test.py
+/// planes add to it. All rows race (race.h): what a busy machine does hits all alike. Writes
+/// sweep.json and sweep.csv, and a thumbnail per row; a run cut short goes on after its last whole
+/// round. Fails: as Stage::prepare(), Stage::drawTimed(), RunStore::open() and the folder.
+/// Tested by: cli_reports_test.py
 Result<void> sweep(Stage& stage, const SweepDesc& desc, const RunInfo& run, ReportFolder& folder);
 
-/// The settings of every row, in order. Pure. Tested by: heatmap_test.cpp
-std::vector<Settings> sweepRows(const Settings& settings, const SceneFacts& facts,
+/// One row: how it is drawn, and which of the series it is of, the plain stack being the first.
+struct SweepRow {
+    Settings settings;
+    int series = 0;
+};
+
+/// Every row, in order. Pure. Tested by: heatmap_test.cpp
+std::vector<SweepRow> sweepRows(const Settings& settings, const SceneFacts& facts,
                                 std::vector<int> layersPerPlane);
 
 } // namespace slabcast

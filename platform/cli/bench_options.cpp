@@ -68,14 +68,22 @@ void bindFrames(Command& command, int& frames) {
 } // namespace
 
 void bindError(Command& command, ErrorOptions& o) {
-    bindReportFolder(command, o.outputFolder,
-                     "error.json, error.csv, report.html and pictures; made where it is missing; a "
-                     "run cut short goes on where it was");
+    bindReportFolder(command, o.folder,
+                     "error.json, error.csv, report.html, figures and pictures; made where it is "
+                     "missing; a run cut short goes on where it was");
     addFlag(command,
             {.flag = "--quick",
              .help = fmt::format("{}x{} pixels and fewer settings", kQuickSize.x, kQuickSize.y),
              .group = "Output"},
             o.quick);
+    addChoice(command,
+              {.flag = "--verification",
+               .help = "refine step, grid and pixel too, in a field by formula, with deliberate "
+                       "mistakes beside: does the error have the orders that theory gives it? And "
+                       "take the worst ray apart, layer by layer. Some seconds",
+               .group = "Output"},
+              o.verification, {{"on", true}, {"off", false}})
+        .usually = "on, with --quick off";
     bindFrames(command, o.frames);
     bindInput(command, o.input);
     bindTexture(command, o.input);
@@ -109,8 +117,10 @@ void bindSkipbench(Command& command, SkipbenchOptions& o) {
              o.volumes.push_back(word);
              return {};
          }});
-    bindReportFolder(command, o.outputFolder,
-                     "skipbench.json, skipbench.csv and report.html; made where missing");
+    bindReportFolder(
+        command, o.folder,
+        "skipbench.json, skipbench.csv, report.html and figures; made where missing; a "
+        "run cut short goes on where it was");
     addFlag(command,
             {.flag = "--quick",
              .help = fmt::format("{}x{} pixels, {} frames, fewer parameters and sizes",

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "perf/edit/replay.h"
+#include "perf/run_store.h"
 #include "platform/cli/commands.h"
 #include "platform/cli/edit_script.h"
 #include "platform/cli/open_stage.h"
@@ -84,17 +85,21 @@ Result<void> editCommand(const EditOptions& options, const std::string& command)
         return tl::unexpected(opened.error());
     }
     Stage& stage = opened->stage;
-    DiskFolder folder(options.outputFolder);
+    DiskFolder folder(options.folder);
     return scriptOf(options, stage)
         .and_then([&](EditScript script) {
-            return folder.make("edit.json").map([&] { return std::move(script); });
+            return folder.make("edit.json")
+                .and_then([&] {
+                    return claim(folder, {"edit", stage.info().name, command});
+                })
+                .map([&] { return std::move(script); });
         })
         .and_then([&](EditScript script) {
             return replayEdits(stage, descOf(options, std::move(script)), runOf(command));
         })
         .and_then([&](const EditReport& report) {
             return write(folder, report).and_then([&] {
-                return verdict(report, options.outputFolder);
+                return verdict(report, options.folder.path);
             });
         });
 }

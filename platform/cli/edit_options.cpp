@@ -103,21 +103,23 @@ void bindRebuilding(Command& command, EditOptions& o) {
 
 void bindEdit(Command& command, EditOptions& o) {
     const auto output = "Output";
-    bindReportFolder(command, o.outputFolder,
-                     "edit.json, edit.csv and report.html; made where it is missing");
+    bindReportFolder(command, o.folder,
+                     "edit.json, edit.csv, report.html and figures; made where it is missing");
     addFlag(command,
             {.flag = "--verify",
              .help = "compare every frame, bit for bit, with one drawn from scratch without "
                      "skipping",
              .group = output},
             o.verify);
-    addNumber(command,
-              {.flag = "--budget",
-               .help = "what a frame may take: a line to hold",
-               .word = "MS",
-               .usually = "1.5 times the median frame by what serves under any transfer function",
-               .group = output},
-              o.budgetMs, 0.001, 1e6);
+    addNumber(
+        command,
+        {.flag = "--budget",
+         .help = "what a frame may take: a line to hold",
+         .word = "MS",
+         .usually =
+             "1.5 times the frame by what serves under any transfer function, each by its own",
+         .group = output},
+        o.budgetMs, 0.001, 1e6);
     bindEdits(command, o);
     bindRebuilding(command, o);
     o.size = {512, 512};

@@ -35,7 +35,7 @@ Result<void> errorCommand(const ErrorOptions& given, const std::string& command)
         return tl::unexpected(opened.error());
     }
     Stage& stage = opened->stage;
-    DiskFolder folder(options.outputFolder, kErrorPictures);
+    DiskFolder folder(options.folder, kErrorPictures);
     if (Result<void> made = folder.make("error.json"); !made) {
         return made;
     }
@@ -46,6 +46,7 @@ Result<void> errorCommand(const ErrorOptions& given, const std::string& command)
     const ErrorDesc desc{.axes = completed(options.axes, options.quick),
                          .quick = options.quick,
                          .frames = options.frames,
+                         .verification = options.verification.value_or(!options.quick),
                          .commandOf = commandOf};
     const Result<std::vector<MeasuredError>> measured =
         measureErrors(stage, desc, runOf(command), folder);

@@ -169,8 +169,9 @@ void bindRender(Command& command, RenderOptions& o) {
 void bindSweep(Command& command, SweepOptions& o) {
     const auto group = "Output";
     o.size = {512, 512};
-    bindReportFolder(command, o.outputFolder,
-                     "sweep.json, sweep.csv and report.html; made where it is missing");
+    bindReportFolder(command, o.folder,
+                     "sweep.json, sweep.csv, report.html, figures and thumbnails; made where it is "
+                     "missing; a run cut short goes on where it was");
     addList(
         command,
         {.flag = "--layers",
@@ -182,7 +183,8 @@ void bindSweep(Command& command, SweepOptions& o) {
         fmt::format("whole numbers from 0 to {}", kMaxTotalLayers));
     addNumber(command,
               {.flag = "--frames",
-               .help = "frames of one turn per row",
+               .help = "rounds of one turn, in each of which every row draws a frame; percentiles "
+                       "need 9",
                .word = "N",
                .usually = fmt::format("{}", o.frames),
                .group = group},
@@ -198,11 +200,16 @@ void bindSweep(Command& command, SweepOptions& o) {
 
 void bindStability(Command& command, StabilityOptions& o) {
     const auto group = "Output";
-    bindReportFolder(command, o.outputFolder,
-                     "stability.json, stability.csv and report.html; made where missing");
+    bindReportFolder(command, o.folder,
+                     "stability.json, stability.csv, report.html, figures and pictures; made where "
+                     "missing");
+    const Choices<std::string> families = familyWords();
     addChoice(command,
-              {.flag = "--family", .help = "only the cases of this family", .group = group},
-              o.family, familyWords());
+              {.flag = "--family",
+               .help = "only the cases of this family: " + wordsOf(families, ", "),
+               .group = group},
+              o.family, families)
+        .word = "FAMILY";
     addFlag(command,
             {.flag = "--reduced",
              .help = "fewer sizes, views and repetitions; the same bounds",

@@ -10,6 +10,7 @@
 #include "perf/error/error_grid.h"
 #include "perf/heatmap.h"
 #include "perf/stage.h"
+#include "platform/cli/report_files.h"
 #include "platform/cli/session.h"
 
 namespace CLI {
@@ -42,34 +43,35 @@ struct RenderOptions : SceneOptions {
 };
 
 struct SweepOptions : SceneOptions {
-    std::string outputFolder;
+    FolderOptions folder;
     std::vector<int> layersPerPlane;
     int frames = 12;
 };
 
 struct StabilityOptions {
-    std::string outputFolder;
+    FolderOptions folder;
     std::string family; // empty: all
     bool reduced = false;
 };
 
 struct ErrorOptions : SceneOptions {
-    std::string outputFolder;
+    FolderOptions folder;
     bool quick = false;
     GridAxes axes;
-    int frames = 5; // of a row, at most
+    int frames = 5;                   // of a row, at most
+    std::optional<bool> verification; // none: unless quick
 };
 
 struct SkipbenchOptions : SceneOptions {
     std::vector<std::string> volumes; // instead of the input's one
-    std::string outputFolder;
+    FolderOptions folder;
     bool quick = false;
     int frames = 9;         // of a row, at most
     std::vector<int> sizes; // edges of cubes that the first volume is resampled to
 };
 
 struct EditOptions : SceneOptions {
-    std::string outputFolder;
+    FolderOptions folder;
     std::string scriptFile;
     std::optional<std::array<std::string, 2>> interpolate; // transfer functions
     int frames = 240;                                      // without a script

@@ -56,8 +56,8 @@ bool run(std::vector<std::string> words) {
 
 } // namespace
 
-DiskFolder::DiskFolder(fs::path path, std::string inner)
-    : path_(std::move(path)), inner_(std::move(inner)) {
+DiskFolder::DiskFolder(const FolderOptions& options, std::string inner)
+    : path_(options.path), inner_(std::move(inner)), fresh_(options.fresh) {
     std::error_code ignored; // what cannot be asked after is not this program's to remove
     made_ = fs::status(path_, ignored).type() == fs::file_type::not_found;
     if (made_) {
@@ -95,6 +95,11 @@ Result<void> DiskFolder::savePicture(const std::string& file, const ReportPictur
 bool DiskFolder::has(const std::string& file) const {
     std::error_code ignored; // what cannot be asked after is not there
     return fs::exists(path_ / file, ignored);
+}
+
+void DiskFolder::remove(const std::string& file) {
+    std::error_code ignored; // it is replaced, if not removed
+    fs::remove(path_ / file, ignored);
 }
 
 std::optional<std::string> DiskFolder::read(const std::string& file) const {

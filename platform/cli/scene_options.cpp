@@ -86,14 +86,21 @@ std::optional<glm::ivec2> parseSize(const std::string& word) {
                                            : std::nullopt;
 }
 
-void bindReportFolder(Command& command, std::string& folder, const std::string& what) {
+void bindReportFolder(Command& command, FolderOptions& folder, const std::string& what) {
     addText(command,
             {.flag = "--out",
              .help = "folder for " + what,
              .word = "FOLDER",
              .group = "Output",
              .required = true},
-            folder);
+            folder.path);
+    addFlag(
+        command,
+        {.flag = "--fresh",
+         .help =
+             "start anew in a folder that holds another run: its tables and its page are removed",
+         .group = "Output"},
+        folder.fresh);
 }
 
 namespace {

@@ -9,7 +9,7 @@ namespace slabcast {
 std::optional<glm::ivec2> parseSize(const std::string& word);
 
 /// The folder of a report that holds `what`.
-void bindReportFolder(Command& command, std::string& folder, const std::string& what);
+void bindReportFolder(Command& command, FolderOptions& folder, const std::string& what);
 
 // What commands that draw have in common, beside the table's settings, in parts.
 void bindInput(Command& command, InputOptions& options);

@@ -1,10 +1,12 @@
 #include <fmt/core.h>
 
+#include "perf/error/scene_key.h"
 #include "perf/skip/bench.h"
 #include "platform/cli/commands.h"
 #include "platform/cli/open_stage.h"
 #include "platform/cli/progress.h"
 #include "platform/cli/report_files.h"
+#include "platform/cli/transfer_choice.h"
 #include "platform/json/transfer_json.h"
 
 namespace slabcast {
@@ -35,18 +37,44 @@ Result<TransferFunction> otherPreset(const Stage& stage) {
     return presetTransferFunction("angio", scene.statistics());
 }
 
-/// That all volumes fit and can be read, before minutes are spent on the first.
-Result<void> checkVolumes(const SkipbenchOptions& options, const Session& session) {
-    for (const std::string& name : options.volumes) {
-        InputOptions input = options.input;
-        input.volume = name;
-        const Result<Volume> volume = openVolume(
-            admittingWhatFits(std::move(input), session.device.caps(), stageDescOf(options)));
-        if (!volume) {
-            return tl::unexpected(volume.error());
+/// A volume as it is read, before minutes are spent on the first: that it can be, and what its
+/// pictures depend on.
+Result<skipbench::Input> inputOf(const SkipbenchOptions& options, const Session& session,
+                                 const std::string& input) {
+    InputOptions given = options.input;
+    given.volume = input;
+    const InputOptions fitting =
+        admittingWhatFits(std::move(given), session.device.caps(), stageDescOf(options));
+    return openVolume(fitting).and_then([&](const Volume& volume) {
+        const VolumeStatistics statistics = statisticsOf(volume);
+        const std::string tf = transferOf(options, input);
+        return chooseTransferFunction(tf, {statistics, volume.unit},
+                                      likelyModality(volume, statistics))
+            .map([&](const TransferFunction& chosen) {
+                const std::string voxels = fingerprint(volume.voxels);
+                return skipbench::Input{.volume = input,
+                                        .voxels = voxels,
+                                        .usualTransfer = options.tf.empty(),
+                                        .key = {{"name", volume.name},
+                                                {"voxels", voxels},
+                                                {"type", name(volume.type)},
+                                                {"placement", placementKey(volume.geometry)},
+                                                {"transfer_function", transferKey(chosen)}}};
+            });
+    });
+}
+
+Result<std::vector<skipbench::Input>> inputsOf(const SkipbenchOptions& options,
+                                               const Session& session) {
+    std::vector<skipbench::Input> inputs;
+    for (const std::string& volume : options.volumes) {
+        Result<skipbench::Input> input = inputOf(options, session, volume);
+        if (!input) {
+            return tl::unexpected(input.error());
         }
+        inputs.push_back(std::move(*input));
     }
-    return {};
+    return inputs;
 }
 
 skipbench::Host hostOf(const SkipbenchOptions& options, const Session& session) {
@@ -71,22 +99,25 @@ Result<void> write(DiskFolder& folder, const skipbench::Report& report) {
 } // namespace
 
 Result<void> skipbenchCommand(const SkipbenchOptions& options, const std::string& command) {
-    DiskFolder folder(options.outputFolder);
+    DiskFolder folder(options.folder);
     const Result<Session> session = openSession();
     if (!session) {
         return tl::unexpected(session.error());
     }
-    if (const Result<void> ready =
-            checkVolumes(options, *session).and_then([&] { return folder.make("skipbench.json"); });
-        !ready) {
+    Result<std::vector<skipbench::Input>> inputs = inputsOf(options, *session);
+    if (!inputs) {
+        return tl::unexpected(inputs.error());
+    }
+    if (const Result<void> ready = folder.make("skipbench.json"); !ready) {
         return ready;
     }
-    const skipbench::Desc desc{.volumes = options.volumes,
+    const skipbench::Desc desc{.volumes = std::move(*inputs),
+                               .device = session->device.caps(),
                                .stage = stageDescOf(options),
                                .sizes = options.sizes,
                                .frames = options.frames,
                                .quick = options.quick};
-    return skipbench::run(desc, hostOf(options, *session), runOf(command))
+    return skipbench::run(desc, hostOf(options, *session), runOf(command), folder)
         .and_then([&](const skipbench::Report& report) { return write(folder, report); });
 }
 

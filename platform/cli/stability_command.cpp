@@ -1,3 +1,4 @@
+#include "perf/run_store.h"
 #include "perf/stability/bench.h"
 #include "perf/stability/report.h"
 #include "platform/cli/commands.h"
@@ -7,8 +8,12 @@
 namespace slabcast {
 
 Result<void> stabilityCommand(const StabilityOptions& options, const std::string& command) {
-    DiskFolder folder(options.outputFolder, stability::kPictures);
-    Result<Session> session = folder.make("stability.json").and_then([] { return openSession(); });
+    DiskFolder folder(options.folder, stability::kPictures);
+    Result<Session> session = folder.make("stability.json")
+                                  .and_then([&] {
+                                      return claim(folder, {"stability", options.family, command});
+                                  })
+                                  .and_then([] { return openSession(); });
     if (!session) {
         return tl::unexpected(session.error());
     }
@@ -23,7 +28,7 @@ Result<void> stabilityCommand(const StabilityOptions& options, const std::string
         })
         .and_then([&] {
             return stability::verdict(bench.cases()).map_error([&](Error error) {
-                error.detail += " in " + options.outputFolder;
+                error.detail += " in " + options.folder.path;
                 return error;
             });
         });

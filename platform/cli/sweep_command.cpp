@@ -15,7 +15,7 @@ Result<void> sweepCommand(const SweepOptions& options, const std::string& comman
     if (!opened) {
         return tl::unexpected(opened.error());
     }
-    DiskFolder folder(options.outputFolder, kSweepThumbnails);
+    DiskFolder folder(options.folder, kSweepThumbnails);
     const SweepDesc desc{options.layersPerPlane, options.frames};
     return folder.make("sweep.json")
         .and_then([&] { return sweep(opened->stage, desc, runOf(command), folder); })

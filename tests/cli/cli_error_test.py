@@ -19,7 +19,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
 import cli_files as files  # noqa: E402
 from cli_case import POINT, CliTest, main  # noqa: E402
-from report_keys import odd_keys  # noqa: E402
+from report_keys import odd_keys, undocumented_columns, undocumented_keys  # noqa: E402
 
 
 class Accuracy(CliTest):
@@ -30,7 +30,6 @@ class Accuracy(CliTest):
             "--layer-spacing", "2,1,0.5,0.25", "--layers-per-plane", "1,0", "--classify", "post",
             "--termination", "off", "--jitter", "off")
     PARTS = ("total", "sampling", "table", "gpu")
-    NO_COMMIT = "starts anew, as this program was built from sources that no commit names"
     PAGE = r"[^\n]*report\.html\n"
 
     @classmethod
@@ -85,6 +84,84 @@ class Accuracy(CliTest):
             total, *parts = (row["error"][part]["rmse"] for part in self.PARTS)
             self.assertLessEqual(total, sum(parts) * (1 + 1e-12))
             self.assertGreaterEqual(total, (2 * max(parts) - sum(parts)) * (1 - 1e-12))
+
+    def test_bias_and_deviation_make_up_the_error(self):
+        for row in self.rows():
+            for part in self.PARTS:
+                error = row["error"][part]
+                self.assertAlmostEqual(error["rmse"] ** 2, error["bias"] ** 2 + error["deviation"] ** 2, places=14)
+                self.assertAlmostEqual(error["alpha_rmse"] ** 2,
+                                       error["alpha_bias"] ** 2 + error["alpha_deviation"] ** 2, places=14)
+                colours = [error[f"{name}_bias"] for name in ("red", "green", "blue")]
+                self.assertAlmostEqual(error["bias"], sum(colours) / 3, places=14)
+                self.assertTrue(error["max"] > 1 / 255 or error["visible_share"] == 0)
+            self.assertTrue(0 <= row["flip"]["mean"] <= row["flip"]["max"] <= 1)
+        coarse, fine = self.rows(layers=0, target="rgba16f")[::3]
+        self.assertGreater(coarse["flip"]["mean"], fine["flip"]["mean"])
+        self.assertGreater(coarse["error"]["total"]["visible_share"], fine["error"]["total"]["visible_share"])
+
+    def test_refinement_finds_every_order_and_every_mistake(self):
+        studies = self.report["refinement"]["studies"]
+        self.assertEqual(self.report["refinement"]["device_refused"], None)
+        for study in studies:
+            told = (study["kind"], study["method"], study["order"], study["why"])
+            self.assertTrue(study["as_expected"], told)
+            self.assertEqual(study["looks_right"], not study["control"], told)
+        kinds = {(study["kind"], study["control"]) for study in studies}
+        self.assertEqual(kinds, {(kind, control) for kind in ("step", "grid", "pixel") for control in (True, False)})
+        device = [study["kind"] for study in studies if "device" in study["method"]]
+        self.assertEqual(device, ["step", "grid"])
+        with open(self.measured / "err" / "refinement.csv", newline="", encoding="utf-8") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual([(line["method"], float(line["rmse"])) for line in table],
+                         [(study["method"], level["rmse"]) for study in studies for level in study["levels"]])
+
+    def test_columns_and_keys_of_its_own_files_are_documented(self):
+        for name in ("refinement.csv", "worst_ray.csv"):
+            self.assertEqual(undocumented_columns(self.measured / "err" / name, "error"), [])
+        self.assertEqual(undocumented_keys(json.loads((self.measured / "err" / "worst_ray.json").read_text()), "error"),
+                         [])
+
+    def test_this_volumes_own_convergence_is_judged(self):
+        (family,) = self.report["convergence"]
+        self.assertEqual((family["classification"], family["expected_order"]), ("post", 2))
+        self.assertEqual([level["rmse"] for level in family["levels"]],
+                         [row["error"]["sampling"]["rmse"] for row in self.rows(target="rgba16f", layers=0)])
+        self.assertEqual(family["as_expected"],
+                         family["asymptotic"] and abs(family["order"] - 2) <= 0.2)
+
+    def test_the_worst_ray_is_taken_apart(self):
+        ray = json.loads((self.measured / "err" / "worst_ray.json").read_text())
+        self.assertEqual({**self.report["worst_ray"], "layers": ray["layers"]}, ray)
+        (row,) = (row for row in self.rows() if row["id"] == ray["row"])
+        self.assertEqual((row["spacing"], ray["pixel"]), (1, row["worst_pixel"]["pixel"]))
+        self.assertEqual(row["worst_pixel"]["error"], row["error"]["total"]["max"])
+        for sampled, exact, reference in zip(ray["layers"][-1]["gathered"], ray["exact"], ray["reference"]):
+            self.assertAlmostEqual(exact, reference, places=8)  # another path to the same integral
+            self.assertLess(abs(sampled - exact), 2 * ray["error"] + 0.01)
+        lengths = sum(layer["length_mm"] for layer in ray["layers"])
+        self.assertAlmostEqual(lengths, ray["exit_mm"] - ray["entry_mm"], places=6)
+        with open(self.measured / "err" / "worst_ray.csv", newline="", encoding="utf-8") as file:
+            table = list(csv.DictReader(file))
+        self.assertEqual([(int(line["layer"]), float(line["value"]), float(line["exact_alpha"])) for line in table],
+                         [(layer["layer"], layer["value"], layer["exact"][3]) for layer in ray["layers"]])
+
+    def test_a_step_is_predicted_beside_the_measured_one(self):
+        found = self.report["predicted_step"]
+        good = [row["spacing"] for row in self.rows(target="rgba16f", layers=0)
+                if row["error"]["sampling"]["rmse"] <= found["threshold_rmse"]]
+        self.assertEqual(found["measured_voxels"], max(good, default=None))
+        self.assertAlmostEqual(found["predicted_mm"],
+                               0.5 / (found["transfer_cycles_per_unit"] * found["gradient_per_mm"]))
+        self.assertTrue(found["why"])
+
+    def test_verification_can_be_left_out(self):
+        self.succeeds(*self.one_row("phantom:marschner-lobb:16"), env=self.own_cache(), notes=self.PAGE)
+        report = self.new_report()
+        self.assertEqual((report["refinement"], report["worst_ray"]), (None, None))
+        self.assertTrue(report["predicted_step"] and report["convergence"])
+        files = {path.name for path in (self.folder / "err").iterdir()}
+        self.assertEqual(files & {"refinement.csv", "worst_ray.csv", "worst_ray.json"}, set())
 
     def test_error_falls_with_the_spacing_squared(self):
         rays = self.rows(target="rgba16f", layers=0)  # what is blended once is rounded once
@@ -145,23 +222,27 @@ class Accuracy(CliTest):
         lines = finished.read_text().splitlines(keepends=True)
         kept, cut = lines[:-2], json.loads(lines[-1])["id"]
         finished.write_text("".join([*kept, lines[-2], lines[-1][:40]]))
-        self.succeeds(*self.GRID, env=self.env, notes=rf"slabcast: err: {len(kept)} rows [^\n]* are kept\n{self.PAGE}")
+        rows_alone = (*self.GRID, "--verification", "off")
+        self.succeeds(*rows_alone, env=self.env,
+                      notes=rf"slabcast: err: {len(kept)} rows [^\n]* are kept\n{self.PAGE}")
         again = json.loads((self.folder / "err" / "error.json").read_text())["rows"]
         for before, after in zip(self.rows(), again, strict=True):
             self.assertEqual(before["error"], after["error"])
             if before["id"] != cut:
                 self.assertEqual(before, after)
         written = finished.stat().st_mtime_ns
-        self.succeeds(*self.GRID, env=self.env, notes=rf"slabcast: err: {len(kept) + 1} rows [^\n]* kept\n{self.PAGE}")
+        self.succeeds(*rows_alone, env=self.env,
+                      notes=rf"slabcast: err: {len(kept) + 1} rows [^\n]* kept\n{self.PAGE}")
         self.assertEqual(finished.stat().st_mtime_ns, written)
         self.assertEqual(json.loads((self.folder / "err" / "error.json").read_text())["rows"], again)
 
-    def test_other_settings_start_anew(self):
+    def test_other_settings_are_refused_unless_they_may_start_anew(self):
         self.copied()
-        anew = "holds rows that differ in camera: starts anew" if self.resumes else self.NO_COMMIT
-        self.succeeds(*self.GRID[:-6], "--classify", "post", "--target", "rgba8", "--jitter", "off", "--termination",
-                      "off", "--camera", "40,10,3", env=self.env,
-                      notes=rf"slabcast: err: {anew}\n{self.PAGE}")
+        other = (*self.GRID[:-6], "--classify", "post", "--target", "rgba8", "--jitter", "off", "--termination", "off",
+                 "--camera", "40,10,3", "--verification", "off")
+        self.fails(*other, env=self.env, cause="err: holds an 'error' run of marschner-lobb .*which differs in camera:",
+                   remedy="give --out another folder, or --fresh")
+        self.succeeds(*other, "--fresh", env=self.env, notes=self.PAGE)
         rows = json.loads((self.folder / "err" / "error.json").read_text())["rows"]
         self.assertEqual(len(rows), len(self.SPACINGS) * len(self.LAYERS))
         self.assertNotIn(rows[0]["error"]["total"], [row["error"]["total"] for row in self.rows()])
@@ -173,13 +254,15 @@ class Accuracy(CliTest):
         """The arguments of a run that measures a single row, but for the axes that are given."""
         axes = {"size": "16x16", "layer-spacing": 2, "layers-per-plane": 0, "classify": "post", "target": "rgba8",
                 "termination": "off", "jitter": "off", **{name.replace("_", "-"): axes[name] for name in axes}}
-        return ("error", volume, "--out", "err", "--frames", "3", *more,
+        return ("error", volume, "--out", "err", "--frames", "3", "--verification", "off", *more,
                 *(word for name, value in axes.items() for word in (f"--{name}", value)))
 
     def new_report(self):
         return json.loads((self.folder / "err" / "error.json").read_text())
 
     def test_damaged_stores_start_anew(self):
+        if not self.resumes:
+            self.skipTest("only a build of committed sources goes on")
         finished = self.copied()
         key, first, *others = finished.read_text().splitlines()
         measured = json.loads(first)
@@ -194,12 +277,13 @@ class Accuracy(CliTest):
                   spoilt(pictures=[]), spoilt(error=None), spoilt(counters={}), spoilt(spacing="1"), spoilt(id=1),
                   spoilt(date=None), "\n".join((key, "7", first)), "7\n" + first, "", "{\n")
         headers = (json.dumps({**json.loads(header), "seconds": "1"}).encode(), b"[]", b"", header)
-        anew = r"rows\.jsonl is damaged: starts anew" if self.resumes else self.NO_COMMIT
         for k, rows in enumerate(stores):
             with self.subTest(k):
                 finished.write_text(rows)
+                if not rows.startswith(key):  # whose rows they are is not known: a finished report would be kept
+                    (self.folder / "err" / "error.json").unlink(missing_ok=True)
                 reference.write_bytes(headers[k % len(headers)] + b"\n" + pixels[:-8])
-                self.succeeds(*grid, env=self.own_cache(), notes=rf"slabcast: err: {anew}\n{self.PAGE}")
+                self.succeeds(*grid, env=self.own_cache(), notes=rf"slabcast: err: rows\.jsonl is damaged: starts anew\n{self.PAGE}")
                 (row,) = self.new_report()["rows"]
                 self.assertEqual((row["id"], row["error"]), (measured["id"], measured["error"]))
 

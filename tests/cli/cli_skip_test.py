@@ -20,7 +20,7 @@ EDGES = {"blocks": (1, 2, 4, 8, 16, 32), **dict.fromkeys(GRIDS[1:], (1, 2, 4, 8)
          **dict.fromkeys(OCTREES, (2, 4, 8, 16, 32, 64))}
 # Of each option: a word, its key in statistics and value there, the structures that have a use for it.
 PARAMETERS = {
-    "--skip-bits": ("64", "bits", 64, ("bitfield-octree",)),
+    "--skip-bits": ("64", "skip_bits", 64, ("bitfield-octree",)),
     "--partitions": ("32", "partitions", 32, ("partitioned",)),
     "--separate-minimum": ("on", "separate_minimum", True, ("partitioned", "bitfield-octree")),
     "--value-range": ("10,200", "value_range", [10, 200], ("partitioned", "bitfield-octree")),
@@ -95,7 +95,7 @@ class Told(CliTest):
                                   *words)["skip"]
                 self.assertEqual(skip["structure"], structure)
                 self.assertEqual(skip["parameters"],
-                                 {"block_edge": 8, **{key: value for _, key, value, _ in mine.values()}})
+                                 {"skip_block": 8, **{key: value for _, key, value, _ in mine.values()}})
                 self.assertEqual((skip["builder"], skip["skips"], skip["tightens"]), ("cpu", True, True))
                 self.assertGreater(skip["build_ms"], 0)
                 self.assertGreater(skip["gpu_bytes"], 0)

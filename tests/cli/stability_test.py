@@ -19,8 +19,9 @@ from report_keys import odd_keys  # noqa: E402
 
 SLABCAST = None  # the program, from the command line
 KEYS = {"family", "name", "quantity", "bound", "reason", "measured", "pass"}
-OPTIONAL_KEYS = {"failure", "pictures", "series", "left_out"}
-FAMILIES = ["stiff", "extreme-data", "extreme-views", "extreme-plans", "in-time", "half-precision", "left-out"]
+OPTIONAL_KEYS = {"failure", "pictures", "series", "left_out", "condition"}
+FAMILIES = ["stiff", "extreme-data", "extreme-views", "extreme-plans", "in-time", "half-precision", "left-out",
+            "symmetry", "cut-rays", "conditioning", "optical-depth", "manufactured"]
 METHODS = [f"{way}, {target}" for target in ("rgba8", "rgba16f") for way in ("slicing", "hybrid", "ray casting")]
 
 
@@ -65,6 +66,26 @@ class ReducedRunTest(unittest.TestCase):
         names = [c["name"] for c in self.cases if c["family"] == "stiff"]
         for method in METHODS:
             self.assertTrue(any(name.endswith(method) for name in names), method)
+
+    def test_every_way_to_store_is_put_to_the_test(self):
+        names = [c["name"] for c in self.cases if c["name"].startswith("stored along ")]
+        self.assertIn("stored along +x +y +z, float32", names)
+        self.assertGreater(len(names), 8)  # of 48: the reduced set
+
+    def test_a_condition_number_is_its_change_over_its_perturbation(self):
+        found = [c["condition"] for c in self.cases if "condition" in c]
+        self.assertTrue(found)
+        for c in found:
+            self.assertAlmostEqual(c["condition_number"] * c["perturbation"], c["largest_change"], 12)
+        unbounded = [c for c in found if c["limit"] is None]
+        step = "step on the data's value"
+        self.assertEqual({c["scene"] for c in unbounded}, {step, f"{step}, drawn in float32"})
+        # All of the ball lies on the step: one ulp of the step's value is enough.
+        jumping = [c for c in unbounded if c["input"] == "value of a point, 1 ulp"]
+        self.assertEqual(len(jumping), 2)
+        for c in jumping:
+            self.assertGreater(c["jumping_share"], 0.1, c["scene"])
+            self.assertGreater(c["condition_number"], 1e5, c["scene"])
 
     def test_names_are_unique(self):
         names = [c["name"] for c in self.cases]

@@ -13,7 +13,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
-from report_pages import ReportTest  # noqa: E402
+from report_pages import ReportTest, check_figures, words_of  # noqa: E402
 
 REPORT = Path(__file__).resolve().parent.parent.parent / "perf" / "pages" / "edit_report.py"
 FRAMES = 120
@@ -27,8 +27,8 @@ def frame(i):
              "draw_ms": octree * (0.8 if settled else 1)}
     return {"frame": i, "step": "interpolate" if edited else "pause", "edit": edited,
             "progress": "swapped" if i % 60 == 52 else "settled" if settled else "waiting",
-            "structure": "proximity" if settled else "bitfield-octree", "frame_ms": sum(parts.values()), "parts": parts,
-            "octree_ms": octree, "naive_ms": 7 + (40 if edited else 0), "equal": True,
+            "skip": "proximity" if settled else "bitfield-octree", "frame_ms": sum(parts.values()), "parts": parts,
+            "octree_ms": octree, "budget_ms": 1.5 * octree, "naive_ms": 7 + (40 if edited else 0), "equal": True,
             "counters": {"volume_fetches": 4e6, "skip_fetches": 1e6 + 1e4 * i}}
 
 
@@ -38,16 +38,16 @@ def measured():
     return {"command": "slabcast edit <skull> --out edit", "commit": "abc", "date": "2026-11-24T10:00:00Z",
             "device": {"renderer": "made up", "vendor": "nobody", "version": "1", "software": False},
             "volume": {"name": "<skull>", "dims": [256, 256, 108]},
-            "conditions": {"size": [512, 512], "planes": 13, "layers_per_plane": 32, "classification": "post",
+            "conditions": {"size": [512, 512], "planes": 13, "layers_per_plane": 32, "settings": {"classify": "post"},
                            "edits": "interpolation", "work_budget_ms": 2, "quiet_frames": 3, "octree_frames": 3,
                            "replays": 3, "turn_degrees": 90},
-            "builds": {"always": {"structure": "bitfield-octree", "block_edge": 4, "ms": 50, "gpu_bytes": 600000},
-                       "settled": {"structure": "proximity", "block_edge": 4, "last_ms": 5, "gpu_bytes": 110592},
+            "builds": {"always": {"structure": "bitfield-octree", "skip_block": 4, "ms": 50, "gpu_bytes": 600000},
+                       "settled": {"structure": "proximity", "skip_block": 4, "last_ms": 5, "gpu_bytes": 110592},
                        "naive_ms": 40},
             "summary": {"compared_with": "bitfield-octree", "worst_over_octree_frame": worst,
                         "worst_of_single_replays": 1.41, "worst_added_over_octree_frame": 1.237,
-                        "worst_octree_frame_over_median": 1.33, "budget_ms": 12,
-                        "budget_given": False, "frames_over_budget": 0, "frames_equal": FRAMES, "frames_to_correct": 1,
+                        "worst_octree_frame_over_median": 1.33, "budget_ms": None,
+                        "budget_over_octree": 1.5, "frames_over_budget": 0, "frames_equal": FRAMES, "frames_to_correct": 1,
                         "frame_ms": {"median": 8.5, "p90": 9.5, "max": 10.1},
                         "naive": {"frame_ms": {"median": 47}, "worst_over_octree_frame": 6.6, "frames_over_budget": 90}},
             "rows": rows}
@@ -58,15 +58,21 @@ class EditReportTest(ReportTest):
 
     def page(self, data):
         (self.folder / self.data).write_text(json.dumps(data))
+        return words_of(self.folder, "edit_data", "edit_page")
+
+    def whole_page(self, data):
+        (self.folder / self.data).write_text(json.dumps(data))
         result = subprocess.run([REPORT, self.folder], capture_output=True, text=True, check=False)
         self.assertEqual(result.returncode, 0, result.stderr)
-        return (self.folder / "report.html").read_text(encoding="utf-8")
+        text = (self.folder / "report.html").read_text(encoding="utf-8")
+        check_figures(self, self.folder, text)
+        return text
 
     def test_says_what_was_found(self):
-        page = self.page(measured())
+        page = self.whole_page(measured())
         worst = max(row["frame_ms"] / row["octree_ms"] for row in measured()["rows"])
         for said in (f"{worst:.2f}×", "6.60×", "23.7 %", "1.33×", "1 frame<", "120 of 120 pictures", "1.41×", "&lt;skull&gt;", "13 × 32",
-                     "skipping: bitfield-octree", "skipping: proximity", "1.5 times the median frame"):
+                     "skipping: bitfield-octree", "skipping: proximity", "1.5 times the frame by"):
             self.assertIn(said, page)
         self.assertNotIn("<skull>", page)
         self.assertEqual(len(re.findall(r'<div class="wide"><svg', page)), 3)
@@ -77,7 +83,7 @@ class EditReportTest(ReportTest):
         page = self.page(measured())
         for said in ("of a frame by the bitfield octree at rest", "frames of edits: the bitfield octree (90 frames).",
                      "the bitfield octree (16 frames) and the proximity cloud (14 frames)", "it took over 2 times.",
-                     "</svg>bitfield octree, made beforehand<", "1.5 times the median frame by the bitfield octree"):
+                     ">bitfield octree, made beforehand<", "1.5 times the frame by the bitfield octree of the same view"):
             self.assertIn(said, page)
 
         data = measured()
@@ -85,11 +91,18 @@ class EditReportTest(ReportTest):
         data["builds"]["always"]["structure"] = "partitioned"
         del data["builds"]["settled"]
         for row in data["rows"]:
-            row["structure"] = "none" if row["edit"] else "partitioned"
+            row["skip"] = "none" if row["edit"] else "partitioned"
         page = self.page(data)
         self.assertIn("frames of edits: nothing (90 frames). In those without: the partitioned maps (30 frames). The "
                       "partitioned maps serve under any transfer function, and nothing is rebuilt.", page)
         self.assertFalse("ctree" in page)  # nor all of the page in a complaint
+
+    def test_a_budget_of_all_frames_is_named(self):
+        data = measured()
+        data["summary"]["budget_ms"] = 12
+        for row in data["rows"]:
+            row["budget_ms"] = 12
+        self.assertIn("The dashed line is the budget: 12 ms, as asked for.", self.page(data))
 
     def test_without_edits_there_is_no_time_of_one(self):
         data = measured()
@@ -102,9 +115,9 @@ class EditReportTest(ReportTest):
 
     def test_survives_what_is_not_known(self):
         data = measured()
-        del data["summary"]["frames_equal"], data["builds"], data["summary"]["budget_ms"], data["conditions"]
+        del data["summary"]["frames_equal"], data["builds"], data["summary"]["budget_over_octree"], data["conditions"]
         for row in data["rows"]:
-            row["counters"] = None
+            row["counters"] = row["budget_ms"] = None
         page = self.page(data)
         self.assertIn("not compared: --verify does", page)
         self.assertEqual(len(re.findall(r'<div class="wide"><svg', page)), 2)

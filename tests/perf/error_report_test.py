@@ -17,7 +17,7 @@ from pathlib import Path
 from report_test import external, png
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
-from report_pages import ReportTest  # noqa: E402
+from report_pages import ReportTest, check_figures, words_of  # noqa: E402
 
 REPORT = Path(__file__).resolve().parent.parent.parent / "perf" / "pages" / "error_report.py"
 SPACINGS = (4, 2, 1, 0.5, 0.25)
@@ -29,7 +29,10 @@ CLASSIFICATIONS = {"post": (6e-3, 2, 4e-5), "preclassified": (2e-2, 1, 1e-4), "p
 
 def errors(rmse):
     return {"rmse": rmse, "psnr": -20 * math.log10(rmse) if rmse else None, "max": 12 * rmse,
-            "mean_delta_e": 40 * rmse, "p999_delta_e": 400 * rmse}
+            "mean_delta_e": 40 * rmse, "p999_delta_e": 400 * rmse, "bias": -0.6 * rmse, "deviation": 0.8 * rmse,
+            "visible_share": 0.125, "alpha_visible_share": 0.0625, "alpha_rmse": 2 * rmse, "alpha_max": 9 * rmse,
+            **{f"{channel}_{moment}": sign * rmse for channel in ("red", "green", "blue", "alpha")
+               for moment, sign in (("bias", -0.5), ("deviation", 0.7))}}
 
 
 def row(classification, target, termination, jitter, spacing, layers):
@@ -51,6 +54,8 @@ def row(classification, target, termination, jitter, spacing, layers):
                  "variant": f"{classification}-proximity-loop"},
         "error": {"total": errors(math.hypot(sampling, table, gpu)), "sampling": errors(sampling),
                   "table": errors(table), "gpu": errors(gpu)},
+        "flip": {"mean": 0.0123, "max": 0.456, "pixels_per_degree": 67},
+        "worst_pixel": {"pixel": [80, 40], "picture": [0.5] * 4, "reference": [0.4] * 4, "error": 0.1},
         "order": {"total": 0.9 * order, "sampling": order, "table": None, "gpu": None},
         "date": "2026-01-02T10:00:05Z", "coarser": None,
         "frame_ms": {"median": ms, "min": 0.95 * ms, "max": 1.2 * ms, "p10": ms, "p90": ms, "n": 4},
@@ -81,6 +86,41 @@ def fetches(entry):
     return entry["counters"]["volume_fetches"] + entry["counters"]["skip_fetches"]
 
 
+def study(kind, method, order, expected, right=2.0, control=False):
+    levels = [{"size": 2.0 ** -k, "rmse": 0.1 * 2 ** (-order * k), "change": None, "order": order if k else None,
+               "self_order": None} for k in range(4)]
+    return {"kind": kind, "method": method, "unit": "mm", "control": control, "expected_order": expected,
+            "why_expected": f"why {method} is so", "right_order": right, "floor": 1e-8, "levels": levels, "order": order,
+            "self_order": order, "asymptotic": True, "why": "the last 3 orders differ by 0.01, within 0.2",
+            "as_expected": order == expected, "looks_right": order == right}
+
+
+def refinement():
+    return {"field": "a formula", "cube_mm": 64, "order_tolerance": 0.2, "stable_orders": 3, "csv": "refinement.csv",
+            "device_refused": None, "studies": [
+                study("step", "midpoint", 2, 2), study("step", "front ends", 1, 1, control=True),
+                study("grid", "trilinear", 2, 2), study("pixel", "silhouette", 0.5, 1, right=1)]}
+
+
+PREDICTED = {"energy_share": 0.99, "transfer_cycles_per_unit": 0.004, "gradient_per_mm": 250, "gradient_p99_per_mm": 120,
+             "gradient_anywhere_per_mm": 300, "predicted_mm": 0.5, "predicted_voxels": 0.5, "predicted_p99_voxels": 1.04,
+             "threshold_rmse": 1 / 255, "measured_voxels": 1.0, "measured_rmse": 3e-3, "ratio": 2.0, "ratio_p99": 0.96,
+             "why": "within a factor of 2 of each other"}
+
+
+def worst_ray(layers=40):
+    def layer(k):
+        gathered = [0.01 * k, 0.008 * k, 0.005 * k, 0.015 * k]
+        return {"layer": k, "distance_mm": 500.0 + k, "place_mm": [k, 2, 3], "length_mm": 1, "value": 100 * math.sin(k),
+                "color": [1, 0.8, 0.5], "opacity": 0.01, "layer_alpha": 0.01, "gathered": gathered,
+                "exact": [0.99 * value for value in gathered]}
+    return {"row": "post_rgba16f", "pixel": [80, 40], "pixel_from_the_top": [80, 119], "picture": [0.5] * 4,
+            "reference": [0.4] * 4, "error": 0.1, "eye_mm": [0, -600, 100], "direction": [0, 1, 0], "entry_mm": 500,
+            "exit_mm": 540, "entry_place_mm": [0, -100, 100], "exit_place_mm": [0, -60, 100], "layers_met": layers,
+            "gathered": [0.4] * 4, "exact": [0.39] * 4, "json": "worst_ray.json", "csv": "worst_ray.csv",
+            "layers": [layer(k) for k in range(layers)]}
+
+
 def measured(spacings=(2, 0.5), layers=(1, 16, 0), jitters=(False, True), terminations=("off",)):
     rows = [row(*settings) for settings in itertools.product(
         CLASSIFICATIONS, ("rgba8", "rgba16f"), terminations, jitters, spacings, layers)]
@@ -95,11 +135,15 @@ def measured(spacings=(2, 0.5), layers=(1, 16, 0), jitters=(False, True), termin
                        "texel_format": "r16", "smallest_voxel_edge_mm": 1.0, "frames_per_row_at_most": 5, "quick": True},
         "left_out": [{"classification": "emission", "why": "this device lacks what it needs"}],
         "reference": {"seconds": 6.1, "tolerance": 1e-10, "size": [160, 160], "picture": "pictures/reference.png"},
+        "convergence": [{**study("", "", 2, 2), "classification": name, "jitter": False} for name in CLASSIFICATIONS],
+        "refinement": refinement(), "predicted_step": PREDICTED,
+        "worst_ray": {key: value for key, value in worst_ray().items() if key != "layers"},
         "rows": rows, "front": front_of(rows, milliseconds), "front_by_fetches": front_of(rows, fetches)}
 
 
 def write(folder, data):
     (folder / "error.json").write_text(json.dumps(data))
+    (folder / "worst_ray.json").write_text(json.dumps(worst_ray()))
     (folder / "pictures").mkdir(exist_ok=True)
     (folder / "pictures/reference.png").write_bytes(png(200))
     for i in data["front"]:
@@ -128,6 +172,7 @@ class WholePageTest(unittest.TestCase):
             write(Path(folder), cls.data)
             cls.result = run(folder)
             cls.text = (Path(folder) / "report.html").read_text()
+            check_figures(cls("test_is_made_without_a_complaint"), Path(folder), cls.text)
 
     def test_is_made_without_a_complaint(self):
         self.assertEqual((self.result.returncode, self.result.stderr), (0, ""))
@@ -184,9 +229,30 @@ class WholePageTest(unittest.TestCase):
         self.assertEqual(self.text.count("difference × 64"), len(self.data["front"]))
 
     def test_has_all_its_plots_for_desks_and_phones(self):
-        for name in ("time", "fetches", "convergence", "planes", "jitter"):
+        for name in ("time", "fetches", "convergence", "planes", "jitter", "refinement", "ray"):
             for suffix in ("", "-n"):
                 self.assertIn(f'id="{name}{suffix}-', self.text)
+
+    def test_tells_orders_that_are_right_from_those_that_are_not(self):
+        def verdict(method):
+            return re.search(rf"<th scope=row>[^<]*{method}</th>.*?<td>(?:<span class=\"fail\">)?([^<]+)(?:</span>)?</td></tr>",
+                             self.text).group(1)
+        self.assertEqual([verdict(name) for name in ("midpoint", "front ends", "silhouette")],
+                         ["as expected", "found out", "not as expected"])
+        self.assertIn("why front ends is so", self.text)
+        self.assertEqual(self.text.count("class=\"failed\""), 1)
+
+    def test_a_control_that_passes_is_called_out(self):
+        data = measured(layers=(0,), jitters=(False,))
+        data["refinement"]["studies"] = [study("step", "front ends", 2, 1, control=True)]
+        with tempfile.TemporaryDirectory() as folder:
+            write(Path(folder), data)
+            self.assertIn('<span class="fail">passes as right', words_of(Path(folder), "error_data", "error_page"))
+
+    def test_bias_alpha_flip_and_prediction_are_told(self):
+        for expected in ("12.5 %", "6.25 %", "0.0123", "67 pixels a degree", "measured over predicted", "0.5 voxels",
+                         "within a factor of 2 of each other", "80, 119 from the upper left", "worst_ray.csv"):
+            self.assertIn(expected.lower(), self.text.lower())
 
     def test_needs_nothing_but_itself(self):
         self.assertEqual(external(self.text), [])
@@ -208,7 +274,8 @@ class ErrorReportTest(ReportTest):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         text = (self.folder / "report.html").read_text()
         self.assertEqual(table_rows(text), [("front", kept["id"])])
-        for missing in ("Convergence", "Error over fetches", "jitter costs", "RGBA8 blending", "Pictures of"):
+        for missing in ("Convergence", "Error over fetches", "jitter costs", "RGBA8 blending", "Pictures of",
+                        "fall as they must", "step that was predicted", "errors are made of", "The worst ray"):
             self.assertNotIn(missing, text)
 
     def test_tells_rows_of_an_earlier_run(self):
@@ -217,8 +284,8 @@ class ErrorReportTest(ReportTest):
             for entry in data["rows"][:count]:
                 entry["date"] = "2026-01-01T23:00:00Z"
             write(self.folder, data)
-            self.assertEqual(run(self.folder).returncode, 0)
-            return re.findall(r"(\d+ rows? \w+) measured earlier", (self.folder / "report.html").read_text())
+            return re.findall(r"(\d+ rows? \w+) measured earlier",
+                              words_of(self.folder, "error_data", "error_page"))
         self.assertEqual([told(0), told(1), told(3)], [[], ["1 row was"], ["3 rows were"]])
 
     def test_refuses_what_is_no_measurement_in_one_line(self):

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "perf/skip/paired_ratio.h"
+#include "perf/skip/bench.h"
 #include "perf/skip/row.h"
 
 using namespace slabcast;
@@ -14,11 +14,12 @@ VolumeRecord skull() {
     VolumeRecord volume{.name = "skull", .input = "skull.nrrd"};
     volume.info.modality = Modality::Ct;
     volume.transferFunction = "CT bone";
+    volume.own = OwnScene::Skull;
     return volume;
 }
 
 VolumeRecord gap() {
-    return {.name = "gap", .input = "phantom:gap:24"};
+    return {.name = "gap", .input = "phantom:gap:24", .own = OwnScene::Phantom};
 }
 
 /// A row of a race: `samples` of it, against those of none.
@@ -30,7 +31,7 @@ Row drawn(const VolumeRecord& volume, SkipStructure structure, const char* famil
             .family = family,
             .mode = mode.name};
     row.plan = FramePlan{.layersPerPlane = 16, .tighten = tighten};
-    row.raced = Raced{std::move(samples), speedup};
+    row.raced = Raced{std::move(samples), {speedup, {speedup / 2, speedup * 2, 0.75}}};
     return row;
 }
 
@@ -40,7 +41,7 @@ Row merged(const VolumeRecord& volume, int edge, int partitions, double speedup)
             .options = {.structure = SkipStructure::Partitioned,
                         .blockEdgeVoxels = edge,
                         .partitions = partitions}};
-    row.merge = Merge{{}, speedup, 0.0};
+    row.merge = Merge{{}, {.median = speedup}, {}};
     return row;
 }
 
@@ -59,23 +60,6 @@ Figure figureOf(const VolumeRecord& volume, const std::vector<Row>& rows, const 
     }
     ADD_FAILURE() << "no figure " << key;
     return {};
-}
-
-TEST(PairedRatio, IsTheMedianOfRoundsAndNotTheRatioOfMedians) {
-    const double a[] = {1.0, 2.0, 9.0};
-    const double b[] = {1.0, 8.0, 3.0};
-    EXPECT_EQ(pairedRatio(a, b), 1.0); // of 1, 1/4 and 3; of the medians it would be 2/3
-    const double even[] = {4.0, 2.0};
-    const double ones[] = {1.0, 1.0};
-    EXPECT_EQ(pairedRatio(even, ones), 3.0);
-}
-
-TEST(PairedRatio, DriftThatIsInBothIsInNeither) {
-    const double quiet[] = {10.0, 10.0, 10.0};
-    const double busy[] = {5.0, 15.0, 40.0};
-    const double half[] = {2.5, 7.5, 20.0};
-    EXPECT_EQ(pairedRatio(quiet, quiet), 1.0);
-    EXPECT_EQ(pairedRatio(busy, half), 2.0);
 }
 
 TEST(SkipFigures, NothingMeasuredIsNoValueAndNotReached) {
@@ -110,17 +94,61 @@ TEST(SkipFigures, TheFasterDistanceMapCounts) {
 }
 
 TEST(SkipFigures, GoalsOfTheSkullAreNoOtherVolumes) {
-    VolumeRecord lung = skull();
-    lung.transferFunction = "CT lung";
-    VolumeRecord head = skull();
-    head.info.modality = Modality::Mr;
+    VolumeRecord other = skull(); // a CT under bone, but not the one that they were set for
+    other.own = OwnScene::None;
     const std::vector<Row> rows{
         drawn(skull(), SkipStructure::Proximity, kRayCasting, kMarchingOnly, {4}, 2.0)};
-    for (const VolumeRecord& volume : {lung, head, gap()}) {
+    for (const VolumeRecord& volume : {other, gap()}) {
         EXPECT_FALSE(figureOf(volume, rows, "distance_map_marching_only_speedup").goal);
         EXPECT_FALSE(figureOf(volume, rows, "hybrid_early_exit_rectangles_speedup").goal);
     }
+    EXPECT_EQ(figureOf(other, rows, "distance_map_marching_only_speedup").value, 2.0);
     EXPECT_FALSE(figureOf(skull(), {}, "bitfield_octree_over_minmax_octree_blocks_visited").goal);
+}
+
+TEST(SkipFigures, AVolumeThatIsNotOursHasNoGoals) {
+    VolumeRecord other = gap();
+    other.own = OwnScene::None;
+    Row row{.table = Table::Sizes,
+            .volume = "gap",
+            .options = {.structure = SkipStructure::BitfieldOctree}};
+    row.cube = Cube{.edge = 256};
+    const std::vector<Row> rows{row};
+    const std::vector<Figure> figures = figuresOf({&other, 1}, rows);
+    EXPECT_FALSE(figures.empty());
+    for (const Figure& figure : figures) {
+        EXPECT_FALSE(figure.goal) << figure.key;
+    }
+}
+
+TEST(SkipFigures, OwnScenesArePhantomsUnderTheirOwnPresetsAndTheSkullUnderBone) {
+    EXPECT_EQ(ownSceneOf({.volume = "phantom:gap:24", .usualTransfer = true}, "Gap"),
+              OwnScene::Phantom);
+    EXPECT_EQ(ownSceneOf({.volume = "phantom:gap:24"}, "Linear"), OwnScene::None);
+    EXPECT_EQ(ownSceneOf({.volume = "skull.nrrd", .voxels = "0", .usualTransfer = true}, "CT bone"),
+              OwnScene::None)
+        << "a file's name makes no skull";
+    const Input skull{.volume = "any.nrrd", .voxels = "7cddd6bf41a5f58c"};
+    EXPECT_EQ(ownSceneOf(skull, "CT bone"), OwnScene::Skull);
+    EXPECT_EQ(ownSceneOf(skull, "CT lung"), OwnScene::None);
+}
+
+TEST(SkipFigures, WhatIsPairedHasAnInterval) {
+    const std::vector<Row> rows{
+        drawn(skull(), SkipStructure::Proximity, kRayCasting, kMarchingOnly, {4, 4, 5}, 2.0),
+        drawn(skull(), SkipStructure::BitfieldOctree, kRayCasting, kMarchingOnly, {4, 8, 15}, 1.5),
+        drawn(skull(), SkipStructure::MinMaxOctree, kRayCasting, kMarchingOnly, {2, 8, 5}, 1.0)};
+    const Figure map = figureOf(skull(), rows, "distance_map_marching_only_speedup");
+    ASSERT_TRUE(map.interval);
+    EXPECT_EQ(map.interval->low, 1.0);
+    EXPECT_EQ(map.interval->high, 4.0);
+    const Figure octrees = figureOf(skull(), rows, "bitfield_octree_over_minmax_octree_time");
+    EXPECT_EQ(octrees.value, 2.0); // of 2, 1 and 3: round by round
+    ASSERT_TRUE(octrees.interval);
+    EXPECT_EQ(octrees.interval->low, 1.0);
+    EXPECT_EQ(octrees.interval->high, 3.0);
+    EXPECT_EQ(octrees.interval->coverage, 0.75);
+    EXPECT_FALSE(figureOf(skull(), rows, "merge_16_speedup_edge_4").interval);
 }
 
 TEST(SkipFigures, OtherVolumesRowsAreNotMixedIn) {

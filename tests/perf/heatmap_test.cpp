@@ -71,18 +71,21 @@ TEST(Sweep, RowsAreThePlainStackAndWhatSkippingAndTightPlanesAdd) {
     SceneFacts facts;
     facts.sphere.radiusMm = 50.0;
     facts.skip.structure = SkipStructure::Proximity;
-    const std::vector<Settings> rows = sweepRows({}, facts, {1, 16, 0, 4096});
+    const std::vector<SweepRow> rows = sweepRows({}, facts, {1, 16, 0, 4096});
     ASSERT_EQ(rows.size(), 12U);
     const int total = totalLayers({}, facts);
-    EXPECT_EQ(rows[1].layersPerPlane, 16);
-    EXPECT_EQ(rows[2].layersPerPlane, total) << "0 is ray casting";
-    EXPECT_EQ(rows[3].layersPerPlane, total) << "never more than there are";
-    EXPECT_EQ(rows[0].skip, SkipStructure::None);
-    EXPECT_FALSE(rows[0].tighten);
-    EXPECT_EQ(rows[4].skip, SkipStructure::Proximity);
-    EXPECT_FALSE(rows[4].tighten);
-    EXPECT_EQ(rows[8].skip, SkipStructure::Proximity);
-    EXPECT_TRUE(rows[8].tighten);
+    EXPECT_EQ(rows[1].settings.layersPerPlane, 16);
+    EXPECT_EQ(rows[2].settings.layersPerPlane, total) << "0 is ray casting";
+    EXPECT_EQ(rows[3].settings.layersPerPlane, total) << "never more than there are";
+    EXPECT_EQ(rows[0].settings.skip, SkipStructure::None);
+    EXPECT_FALSE(rows[0].settings.tighten);
+    EXPECT_EQ(rows[3].series, 0);
+    EXPECT_EQ(rows[4].series, 1);
+    EXPECT_EQ(rows[8].series, 2);
+    EXPECT_EQ(rows[4].settings.skip, SkipStructure::Proximity);
+    EXPECT_FALSE(rows[4].settings.tighten);
+    EXPECT_EQ(rows[8].settings.skip, SkipStructure::Proximity);
+    EXPECT_TRUE(rows[8].settings.tighten);
 }
 
 TEST(Sweep, WithoutSkippingTightPlanesAreAllThatIsAdded) {
@@ -90,10 +93,10 @@ TEST(Sweep, WithoutSkippingTightPlanesAreAllThatIsAdded) {
     facts.skip.structure = SkipStructure::Blocks; // what planes are tightened by
     Settings settings;
     settings.skip = SkipStructure::None;
-    const std::vector<Settings> rows = sweepRows(settings, facts, {1});
+    const std::vector<SweepRow> rows = sweepRows(settings, facts, {1});
     ASSERT_EQ(rows.size(), 2U);
-    EXPECT_EQ(rows[1].skip, SkipStructure::None);
-    EXPECT_TRUE(rows[1].tighten);
+    EXPECT_EQ(rows[1].settings.skip, SkipStructure::None);
+    EXPECT_TRUE(rows[1].settings.tighten);
     settings.tighten = false;
     EXPECT_EQ(sweepRows(settings, facts, {1}).size(), 1U);
 }

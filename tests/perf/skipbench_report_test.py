@@ -6,6 +6,7 @@ With a folder as its argument, writes the made-up comparison and its page there,
 
 import json
 import re
+import shutil
 import subprocess
 import sys
 import unittest
@@ -15,7 +16,7 @@ from types import SimpleNamespace
 from report_test import external
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
-from report_pages import ReportTest  # noqa: E402
+from report_pages import ReportTest, check_figures, words_of  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "perf" / "pages"))
 import skipbench_plots  # noqa: E402
@@ -35,16 +36,20 @@ def times(median):
 
 
 def parameters(structure):
-    row = {"structure": structure}
+    row = {"skip": structure}
     if structure != "none":
-        row["block_edge"] = 4
+        row["skip_block"] = 4
     if structure == "bitfield-octree":
-        row["bits"] = 32
+        row["skip_bits"] = 32
     if structure == "partitioned":
         row["partitions"] = 64
     if structure.endswith("octree"):
         row.update({"initial_level": 3, "traversal": "bidirectional"})
     return row
+
+
+def ratio(name, value):
+    return {name: value, f"{name}_low": 0.9 * value, f"{name}_high": 1.25 * value, "speedup_coverage": 0.9375}
 
 
 def counters(structure):
@@ -61,17 +66,17 @@ def frames(volume):
             for structure, speedup in SPEEDUPS.items():
                 for tight in (False, True) if family != "ray casting" and structure != "none" else (False,):
                     ms = MODES[mode] / speedup / (1.4 if tight else 1)
-                    finer = {"block_edge": 2} if structure == "chebyshev" and mode == "early exit" else {}
+                    finer = {"skip_block": 2} if structure == "chebyshev" and mode == "early exit" else {}
                     rows.append({"table": "frames", "volume": volume, "family": family, "mode": mode,
                                  **parameters(structure), **finer, "planes": 7, "layers_per_plane": 64, "tighten": tight,
                                  "order": "back-to-front", "frame_ms": times(ms), "samples": [ms] * 5,
-                                 "speedup": MODES[mode] / ms, "counters": counters(structure)})
+                                 **ratio("speedup", MODES[mode] / ms), "counters": counters(structure)})
     return rows
 
 
 def searched(volume):
-    return [{"table": "search", "volume": volume, **parameters(structure), "block_edge": edge, "initial_level": level,
-             **({"bits": bits} if bits else {}), "traversal": way, "ms": 4 + edge / 4 + level / 3 + (way == "top-down")}
+    return [{"table": "search", "volume": volume, **parameters(structure), "skip_block": edge, "initial_level": level,
+             **({"skip_bits": bits} if bits else {}), "traversal": way, "search_ms": 4 + edge / 4 + level / 3 + (way == "top-down")}
             for structure in ("boolean-octree", "bitfield-octree") for edge in (2, 4, 8) for level in (0, 3)
             for way in ("bidirectional", "top-down") for bits in ((8, 32) if structure[1] == "i" else (None,))]
 
@@ -91,20 +96,21 @@ def merging(volume):
         for count in PARTITIONS:
             refused = {"refused": REFUSED} if edge == 1 and count > 16 else {
                 "init_ms": 3.0 * count, "gpu_bytes": 1000, "host_bytes": 110_592 * count}
-            rows.append({"table": "partitions", "volume": volume, "structure": "partitioned", "block_edge": edge,
+            rows.append({"table": "partitions", "volume": volume, "skip": "partitioned", "skip_block": edge,
                          "partitions": count, **refused})
         for tf, name in TRANSFERS.items():
-            named = {"volume": volume, "block_edge": edge, "tf": tf, "tf_name": name}
-            rows += [{"table": "rebuild", "structure": structure, "build_ms": times(9.0), "of_ranges_ms": times(1.0),
+            named = {"volume": volume, "skip_block": edge, "tf": tf, "tf_name": name}
+            rows += [{"table": "rebuild", "skip": structure, "build_ms": times(9.0), "of_ranges_ms": times(1.0),
                       **named} for structure in ("chebyshev", "proximity")]
-            rows += [{"table": "merge", "structure": "partitioned", "partitions": count, "update_ms": times(count / 64),
-                      "speedup": 9 * 64 / count, **named} for count in PARTITIONS if edge == 4 or count == 16]
+            rows += [{"table": "merge", "skip": "partitioned", "partitions": count, "update_ms": times(count / 64),
+                      **ratio("speedup", 9 * 64 / count), **named} for count in PARTITIONS if edge == 4 or count == 16]
     return rows
 
 
 def figure(name, volume, value, goal, sense=">="):
     reached = None if value is None or goal is None else value >= goal if sense == ">=" else value <= goal
-    return {"name": name, "volume": volume, "value": value, "goal": goal, "sense": sense, "reached": reached,
+    paired = {"low": 0.9 * value, "high": 1.25 * value, "coverage": 0.9375} if value and "map" in name else {}
+    return {"name": name, "volume": volume, "value": value, **paired, "goal": goal, "sense": sense, "reached": reached,
             "from": "of these rows"}
 
 
@@ -119,8 +125,9 @@ def compared():
     return {
         "command": "slabcast skipbench skull.nrrd phantom:gap --out bench", "commit": "abc1234", "date": "2026-01-02",
         "device": {"vendor": "Maker", "renderer": "Test <GPU>", "version": "OpenGL ES 3.2", "software": True},
-        "conditions": {"size": [256, 256], "camera": [0, 10, 2.5], "fov_degrees": 40, "layer_spacing_voxels": 1.0,
-                       "lattice": "planar", "target": "rgba8", "space": "display", "termination": 0.9961,
+        "conditions": {"size": [256, 256], "camera": [0, 10, 2.5], "fov_degrees": 40,
+                       "settings": {"layer_spacing": 1.0, "lattice": "planar", "target": "rgba8", "space": "display",
+                                    "termination": 0.9961},
                        "frames_per_row_at_most": 5, "partition_budget_bytes": 2 ** 28, "quick": True},
         "volumes": [{"name": skull, "dims": [256, 256, 108], "type": "int16", "transfer_function": "CT <bone>",
                      "texel_bytes": 14155776, "codes_ms": 17.0},
@@ -152,15 +159,20 @@ class SkipbenchReportTest(ReportTest):
     def setUp(self):
         super().setUp()
         if not self.full:
-            type(self).full = self.page(compared())
-            for path in self.folder.iterdir():
-                path.unlink()
+            type(self).full = self.whole_page(compared())
+            check_figures(self, self.folder, self.full)
+            shutil.rmtree(self.folder)
+            self.folder.mkdir()
 
     def page(self, data):
         write(self.folder, data)
+        return words_of(self.folder, "skipbench_data", "skipbench_page")
+
+    def whole_page(self, data):
+        write(self.folder, data)
         result = subprocess.run([REPORT, self.folder], capture_output=True, text=True, check=False)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
-        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["report.html", "skipbench.json"])
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["figures", "report.html", "skipbench.json"])
         return (self.folder / "report.html").read_text()
 
     def test_all_parts_are_there_and_nothing_outside(self):
@@ -186,6 +198,24 @@ class SkipbenchReportTest(ReportTest):
         self.assertIn("256³", goals)
         self.assertEqual(goals.count("<b class=fail>no</b>"), 1)
         self.assertIn("1 figure without a goal", goals)
+        self.assertIn("<td>3.1<br><i>2.79 – 3.88</i></td>", goals)  # paired, as builds are not
+        self.assertIn("<td>61</td>", goals)
+        self.assertIn("here 93.8 %.", goals)
+
+    def test_ratios_have_their_intervals(self):
+        self.assertIn("<b>2.90×</b><br><i>2.61 – 3.62</i>", self.full)
+        self.assertIn("9.0×</b> <i>8.1 – 11.2</i>", self.full)
+
+    def test_without_goals_there_is_nothing_to_reach(self):
+        data = compared()
+        for entry in data["figures"]:
+            entry["goal"] = entry["reached"] = None
+        data["rows"] = [row for row in data["rows"] if row["table"] == "frames"]
+        text = self.page(data)
+        self.assertIn("<h2>Figures</h2>", text)
+        self.assertIn("Goals were set for the project’s own scenes only.", text)
+        for words in ("Figures to reach", "<th scope=col>goal</th>", "Figures reached"):
+            self.assertFalse(words in text, words)
 
     def test_the_papers_ratios_stand_beside(self):
         text = self.full
@@ -212,11 +242,13 @@ class SkipbenchReportTest(ReportTest):
 
     def test_bars_start_at_what_none_takes(self):
         """Also those of what is slower, which lie to the line's other side."""
-        bars = []
-        axes = SimpleNamespace(barh=lambda place, width, left, **_: bars.append((left, left + width)))
+        bars, spreads = [], []
+        axes = SimpleNamespace(barh=lambda place, width, left, **_: bars.append((left, left + width)),
+                               errorbar=lambda x, y, xerr, **_: spreads.append((x, xerr)))
         for speedup in (0.8, 1.0, 3.0):
-            skipbench_plots._bar(axes, 0, speedup)
+            skipbench_plots._bar(axes, 0, SimpleNamespace(speedup=speedup, interval=(0.5 * speedup, 2 * speedup)))
         self.assertEqual(bars, [(1, 0.8), (1, 1.0), (1, 3.0)])
+        self.assertEqual(spreads[2], (3.0, [[1.5], [3.0]]))
 
     def test_lives_without_what_was_not_measured(self):
         data = compared()

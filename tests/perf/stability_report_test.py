@@ -36,6 +36,20 @@ def turning(lattice, ratio, degrees):
                         "x_label": "turn, degrees", "y_label": "RMS change of a pixel"})
 
 
+def depth(way, x):
+    """Errors over bounds of many decades."""
+    error = {"float32": 1e-7, "rgba8": 2e-3 / x}[way]
+    return case("optical-depth", f"depth {x}, {way}", 2 * error, error, "a rounding", "error of alpha, of itself",
+                series={"group": way, "x": x, "y": error, "x_label": "optical depth", "y_label": "error of alpha",
+                        "bound": 2 * error})
+
+
+def condition(name, limit, share):
+    return case("conditioning", name, 9.0, 1.5, "by <derivatives>", "condition number",
+                condition={"scene": "ramps & steps", "input": name, "perturbation": 2.0 ** -23, "largest_change": 3e-7,
+                           "condition_number": 2.5, "limit": limit, "jumping_share": share})
+
+
 def measured():
     stiff = [case("stiff", f"one-unit step, {method}", 1.0, 0.05 * (i + 1) ** 2 / 3,
                   pictures=[{"name": "drawn", "file": f"pictures/step{i}.png"}] if i < 2 else [])
@@ -57,13 +71,16 @@ def measured():
                             "volume_and_skip_bytes": 2 ** 20 * n, "timed_frames": 9, "least_frame_ms": 2.0 * n,
                             "least_frame_ms_with_all": 5.0})
               for n, name in ((1, "nothing empty"), (2, "no light"))]
+    bounds = [depth(way, x) for way in ("float32", "rgba8") for x in (1e-8, 1.0, 1e8)]
+    bounds += [condition("eye <across>", 9.0, 0.0), condition("value", None, 0.25)]
     scenes.append(case("left-out", "skull", 0, 0, "by GL's own account", "resources too many", left_out={}))
     return {
         "command": "slabcast stability --out stability", "commit": "abc1234", "date": "2026-01-02", "reduced": True,
         "seconds": 41.5, "device": {"vendor": "Maker", "renderer": "Test <GPU> & Co", "version": "OpenGL ES 3.2",
                                     "software": False},
         "cases": stiff + data + [turning(lattice, ratio, degrees) for lattice in ("planar", "shells")
-                                 for ratio in ("slicing", "hybrid") for degrees in (0.01, 0.1, 1)] + half + scenes,
+                                 for ratio in ("slicing", "hybrid") for degrees in (0.01, 0.1, 1)] + half + scenes
+        + bounds,
         "families": [{"name": "stiff", "title": "Stiff transfer functions"}, {"name": "unused", "title": "Unused"},
                      {"name": "extreme-data", "title": "Extreme data"}, {"name": "in-time", "title": "In time"},
                      {"name": "half-precision", "title": "Half precision"}]}
@@ -120,7 +137,8 @@ class WholePageTest(unittest.TestCase):
                             r"<td>(?:<b class=fail>)?(\d+)", self.part("Families"))
         self.assertEqual(counts, [("Stiff transfer functions", "6", "5", "1"), ("Extreme data", "3", "1", "2"),
                                   ("In time", "12", "12", "0"), ("Half precision", "8", "8", "0"),
-                                  ("left-out", "3", "3", "0"), ("all", "32", "29", "3")])
+                                  ("left-out", "3", "3", "0"), ("optical-depth", "6", "6", "0"),
+                                  ("conditioning", "2", "2", "0"), ("all", "40", "37", "3")])
 
     def test_a_shared_reason_is_stated_once(self):
         self.assertEqual(self.part("Stiff transfer functions").count(html.escape(PIXEL)), 1)
@@ -138,6 +156,28 @@ class WholePageTest(unittest.TestCase):
         scenes = self.part("left-out")
         for expected in ("no light: shading is off", "<code>transfer</code>", "140,000", "2 MiB", "1.25×"):
             self.assertIn(expected, scenes)
+
+    def test_condition_numbers_stand_beside_their_limits(self):
+        section = self.part("conditioning")
+        for expected in ("ramps &amp; steps", "eye &lt;across&gt;", "1.2e−7", "3.0e−7", "<td>2.5</td><td>9</td><td>none",
+                         "<b>unbounded</b>: a step</td><td>25 %"):
+            self.assertIn(expected, section)
+
+    def test_bounds_are_drawn_where_they_are_told(self):
+        sys.path.insert(0, str(REPORT.parent))
+        import stability_data
+        import stability_plots
+        with tempfile.TemporaryDirectory() as folder:
+            write(Path(folder), self.data)
+            families = {family.name: family for family in stability_data.load(folder).families}
+        (_, panels), = stability_plots.plots_of(families["optical-depth"])
+        for point, expected in zip(sorted(panels[""]["rgba8"]), ((1e-8, 2e5, 4e5), (1, 2e-3, 4e-3), (1e8, 2e-11, 4e-11))):
+            for value, meant in zip(point, expected):
+                self.assertAlmostEqual(value / meant, 1, 12)
+        # A millionth of the largest error would hide float32's.
+        self.assertAlmostEqual(stability_plots.floor_of(panels) / 2e-12, 1, 12)
+        (_, turning_panels), = stability_plots.plots_of(families["in-time"])
+        self.assertAlmostEqual(stability_plots.floor_of(turning_panels) / 0.03e-6, 1, 12)
 
     def test_needs_nothing_but_itself(self):
         self.assertEqual(external(self.text), [])

@@ -21,12 +21,15 @@ public:
         return {};
     }
     bool has(const std::string& file) const override { return files.contains(file); }
+    void remove(const std::string& file) override { files.erase(file); }
+    bool mayBeReplaced() const override { return replaceable; }
     std::optional<std::string> read(const std::string& file) const override {
         const auto found = files.find(file);
         return found == files.end() ? std::nullopt : std::optional(found->second);
     }
 
     std::map<std::string, std::string> files;
+    bool replaceable = false;
 };
 
 } // namespace slabcast

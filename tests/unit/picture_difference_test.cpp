@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/frame_scene.h"
 #include "tests/support/property.h"
 
 namespace slabcast {
@@ -148,6 +149,62 @@ TEST(PictureDifference, PerceptionDoesNotDependOnTheSpace) {
     EXPECT_GT(encoded.meanDeltaE, 1.0);
     EXPECT_NEAR(encoded.meanDeltaE, light.meanDeltaE, 1e-12);
     EXPECT_NE(encoded.rmse, light.rmse);
+}
+
+/// Bias and scatter are told apart, and together they are the RMSE: per channel and in total.
+TEST(PictureDifference, RmseIsBiasAndDeviation) {
+    test::Dice dice(1);
+    std::vector<glm::dvec4> reference, picture;
+    const glm::dvec4 bias(0.01, -0.02, 0.003, -0.04);
+    for (int i = 0; i < 500; ++i) {
+        reference.emplace_back(dice.inCube(0.2, 0.8), 0.5);
+        const glm::dvec4 noise(dice.inCube(-0.05, 0.05), dice.uniform(-0.01, 0.01));
+        picture.push_back(reference.back() + bias + noise);
+    }
+    const PictureDifference d = difference(picture, reference, CompositingSpace::Display);
+    double squares = 0.0, sum = 0.0;
+    for (int k = 0; k < 4; ++k) {
+        const ErrorMoments& m = d.channels[static_cast<std::size_t>(k)];
+        double own = 0.0, mean = 0.0;
+        for (std::size_t i = 0; i < picture.size(); ++i) {
+            const double apart = picture[i][k] - reference[i][k];
+            own += apart * apart / 500.0;
+            mean += apart / 500.0;
+        }
+        EXPECT_NEAR(m.bias, mean, 1e-15);
+        EXPECT_NEAR(m.bias, bias[k], 0.005); // 0.05 / sqrt(3 * 500) is 0.0013
+        EXPECT_NEAR(m.bias * m.bias + m.deviation * m.deviation, own, 1e-15);
+        EXPECT_NEAR(m.rmse * m.rmse, own, 1e-15);
+        squares += k < 3 ? own / 3.0 : 0.0;
+        sum += k < 3 ? mean / 3.0 : 0.0;
+    }
+    EXPECT_NEAR(d.bias, sum, 1e-15);
+    EXPECT_NEAR(d.bias * d.bias + d.deviation * d.deviation, squares, 1e-15);
+    EXPECT_NEAR(d.rmse * d.rmse, squares, 1e-15);
+}
+
+TEST(PictureDifference, APureBiasHasNoDeviation) {
+    const std::vector<glm::dvec4> reference(64, glm::dvec4(0.25));
+    const std::vector<glm::dvec4> picture(64, glm::dvec4(0.25 + 0x1p-6));
+    const PictureDifference d = difference(picture, reference, CompositingSpace::Display);
+    EXPECT_EQ(d.bias, 0x1p-6);
+    EXPECT_EQ(d.deviation, 0.0);
+    EXPECT_EQ(d.channels[3].bias, 0x1p-6);
+}
+
+/// A pixel counts once, however many of its channels are off; 1/255 itself is not beyond it.
+TEST(PictureDifference, CountsThePixelsThatEightBitsWouldShow) {
+    const std::vector<glm::dvec4> reference(8, glm::dvec4(0.0));
+    std::vector<glm::dvec4> picture = reference;
+    picture[0] = {1.01 / 255.0, 1.01 / 255.0, 0.0, 0.0};
+    picture[1].z = -1.01 / 255.0;
+    picture[2].x = 1.0 / 255.0;
+    picture[3].w = 0.5;
+    const PictureDifference d = difference(picture, reference, CompositingSpace::Display);
+    EXPECT_EQ(d.visibleShare, 2.0 / 8.0);
+    EXPECT_EQ(d.visibleAlphaShare, 1.0 / 8.0);
+    EXPECT_EQ(d.channels[3].max, 0.5);
+    EXPECT_EQ(d.max, 1.01 / 255.0);
 }
 
 } // namespace
