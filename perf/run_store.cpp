@@ -10,8 +10,8 @@ namespace {
 
 constexpr const char* kRowsFile = "rows.jsonl";
 /// What any run may have left beside its report.
-constexpr const char* kLeftFiles[] = {kRowsFile, "reference.f64", "refinement.csv", "worst_ray.csv",
-                                      "report.html"};
+constexpr const char* kLeftFiles[] = {kRowsFile,       "reference.f64",  "refinement.csv",
+                                      "worst_ray.csv", "worst_ray.json", "report.html"};
 
 /// Takes the next line off the text, as JSON; nothing where there is none or it is something else.
 std::optional<Json> nextLine(std::string_view& text) {

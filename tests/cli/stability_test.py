@@ -15,7 +15,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
-from report_keys import odd_keys  # noqa: E402
+from report_keys import odd_keys, undocumented_columns, undocumented_keys  # noqa: E402
 
 SLABCAST = None  # the program, from the command line
 KEYS = {"family", "name", "quantity", "bound", "reason", "measured", "pass"}
@@ -95,6 +95,8 @@ class ReducedRunTest(unittest.TestCase):
         self.assertLessEqual({"command", "commit", "date", "device", "reduced", "seconds"}, set(self.report))
         self.assertTrue(self.report["reduced"])
         self.assertEqual(odd_keys(self.report), [])
+        self.assertEqual(undocumented_keys(self.report, "stability"), [])
+        self.assertEqual(undocumented_columns(self.folder / "stability.csv", "stability"), [])
         for case in self.cases:
             self.assertLessEqual(KEYS, set(case), case["name"])
             self.assertLessEqual(set(case), KEYS | OPTIONAL_KEYS, case["name"])
