@@ -118,14 +118,16 @@ TEST_F(CostTest, FilesOfVoxelsAreOpenedTwiceAtMost) {
 TEST_F(CostTest, PicturesAreOpenedTwiceAtMost) {
     for (const char* ending : {"png", "jpg", "tif", "bmp", "tga", "pgm", "exr"}) {
         SCOPED_TRACE(ending);
-        const bool isExr = std::string(ending) == "exr";
+        const auto endsAs = [&](const char* other) { return std::string(ending) == other; };
         for (int slice = 1; slice <= 3; ++slice) {
             writeImage(fmt::format("s{}.{}", slice, ending),
-                       isExr ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::UINT8);
+                       endsAs("exr") ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::UINT8);
         }
+        LoadOptions options; // each reader of its own would load the library anew
+        options.process = endsAs("png") ? ReadIn::OwnProcess : ReadIn::ThisProcess;
         expectOpenedTwiceAtMost(folder_, 3, [&] {
-            const Result<Volume> volume = loadVolume(folder_);
-            ASSERT_TRUE(volume || std::string(ending) == "bmp" || std::string(ending) == "tga")
+            const Result<Volume> volume = loadVolume(folder_, options);
+            ASSERT_TRUE(volume || endsAs("bmp") || endsAs("tga"))
                 << volume.error().detail; // their writers make colours of grey
         });
         for (const auto& file : std::filesystem::directory_iterator(folder_)) {
