@@ -118,8 +118,8 @@ Json toJson(std::span<const RefinementLevel> levels, const Convergence& c) {
 Json familyConvergence(const Json& rows, bool hasSteps) {
     std::map<std::pair<std::string, bool>, std::vector<RefinementLevel>> families;
     for (const Json& row : rows) {
-        auto& levels = families[{row.at("classification").text(), row.at("jitter").flag()}];
-        const double spacing = row.at("spacing").number();
+        auto& levels = families[{row.at("classify").text(), row.at("jitter").flag()}];
+        const double spacing = row.at("layer_spacing").number();
         const auto isThis = [=](const RefinementLevel& level) { return level.size == spacing; };
         // What is sampled depends neither on planes nor on target nor on termination.
         if (std::none_of(levels.begin(), levels.end(), isThis)) {
@@ -133,7 +133,7 @@ Json familyConvergence(const Json& rows, bool hasSteps) {
         const Convergence convergence = convergenceOf(levels, kReferenceFloor);
         const Promise promise = promiseOf(family.first, hasSteps);
         Json entry = toJson(levels, convergence);
-        entry.update({{"classification", family.first},
+        entry.update({{"classify", family.first},
                       {"jitter", family.second},
                       {"expected_order", promise.order},
                       {"why_expected", promise.why},

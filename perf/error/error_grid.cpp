@@ -25,7 +25,7 @@ void fill(std::vector<T>& axis, std::vector<T> defaults) {
 /// Rows of one family differ in spacing alone.
 Json familyOf(const Json& row) {
     Json family;
-    for (const char* key : {"layers", "classification", "target", "termination", "jitter"}) {
+    for (const char* key : {"layers_per_plane", "classify", "target", "termination", "jitter"}) {
         family[key] = row.at(key);
     }
     return family;
@@ -51,16 +51,17 @@ Json orderOf(const Json& coarse, const Json& fine, const char* part) {
         return nullptr;
     }
     return std::log(*rmseOf(coarse, part) / *rmseOf(fine, part)) /
-           std::log(coarse.at("spacing").number() / fine.at("spacing").number());
+           std::log(coarse.at("layer_spacing").number() / fine.at("layer_spacing").number());
 }
 
 /// The row of the same family with the next larger spacing.
 const Json* nextCoarser(const Json& rows, const Json& row) {
     const Json* found = nullptr;
     for (const Json& other : rows) {
-        const bool coarser = other.at("spacing").number() > row.at("spacing").number();
+        const bool coarser = other.at("layer_spacing").number() > row.at("layer_spacing").number();
         if (coarser && familyOf(other) == familyOf(row) &&
-            (found == nullptr || other.at("spacing").number() < found->at("spacing").number())) {
+            (found == nullptr ||
+             other.at("layer_spacing").number() < found->at("layer_spacing").number())) {
             found = &other;
         }
     }
@@ -134,19 +135,19 @@ Json toJson(const GridAxes& axes) {
         return all;
     };
     const auto named = [](auto value) { return name(value); };
-    return {{"spacings", Json::listOf(axes.spacings)},
-            {"layers", Json::listOf(axes.layersPerPlane)},
-            {"classifications", list(axes.classifications, named)},
-            {"targets", list(axes.targets, named)},
-            {"terminations",
+    return {{"layer_spacing", Json::listOf(axes.spacings)},
+            {"layers_per_plane", Json::listOf(axes.layersPerPlane)},
+            {"classify", list(axes.classifications, named)},
+            {"target", list(axes.targets, named)},
+            {"termination",
              list(axes.terminations, [](const std::optional<double>& t) { return toJson(t); })},
             {"jitter", Json::listOf(axes.jitter)}};
 }
 
 Json toJson(const Sampling& s) {
-    return {{"spacing", s.layerSpacingVoxels},          {"layers", s.layersPerPlane},
-            {"classification", name(s.classification)}, {"target", name(s.target)},
-            {"termination", toJson(s.termination)},     {"jitter", s.jitter}};
+    return {{"layer_spacing", s.layerSpacingVoxels}, {"layers_per_plane", s.layersPerPlane},
+            {"classify", name(s.classification)},    {"target", name(s.target)},
+            {"termination", toJson(s.termination)},  {"jitter", s.jitter}};
 }
 
 void addOrders(Json& rows) {

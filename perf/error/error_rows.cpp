@@ -109,15 +109,14 @@ Result<Json> ErrorRows::measure(const std::vector<Sampling>& grid) {
 
 bool ErrorRows::classify(Classification classification) {
     const auto isThis = [=](const Json& entry) {
-        return entry.at("classification") == name(classification);
+        return entry.at("classify") == name(classification);
     };
     if (std::any_of(leftOut_.begin(), leftOut_.end(), isThis)) {
         return false;
     }
     const Result<void> look = stage_.reclassify(classification);
     if (!look) {
-        leftOut_.push_back(
-            {{"classification", name(classification)}, {"why", look.error().detail}});
+        leftOut_.push_back({{"classify", name(classification)}, {"why", look.error().detail}});
     }
     return look.has_value();
 }

@@ -12,7 +12,7 @@ namespace slabcast {
 
 namespace {
 
-constexpr int kVersion = 3;
+constexpr int kVersion = 4;
 constexpr double kMost = 1e300;
 
 /// Reads members of one row; the first that is missing or of another kind is what is wrong.
@@ -90,11 +90,12 @@ MeasuredError measuredIn(RowReader& row) {
         .scene = {row.text("volume"), row.text("tf"), row.text("fingerprint"),
                   row.named("space", {CompositingSpace::Display, CompositingSpace::Linear})},
         .size = row.size("size"),
-        .sampling = {.layerSpacingVoxels = row.number("spacing", 1e-3, 1e6),
-                     .layersPerPlane = static_cast<int>(row.number("layers", 0, kMaxTotalLayers)),
+        .sampling = {.layerSpacingVoxels = row.number("layer_spacing", 1e-3, 1e6),
+                     .layersPerPlane =
+                         static_cast<int>(row.number("layers_per_plane", 0, kMaxTotalLayers)),
                      .classification =
-                         row.named("classification", {Classification::Post, Classification::Pre,
-                                                      Classification::Preintegrated}),
+                         row.named("classify", {Classification::Post, Classification::Pre,
+                                                Classification::Preintegrated}),
                      .target = row.named("target", {TargetFormat::Rgba8, TargetFormat::Rgba16f}),
                      .termination = row.orOff("termination", 0.0, 1.0),
                      .jitter = row.flag("jitter")},

@@ -118,9 +118,9 @@ struct Measured {
 std::vector<Measured> samplingErrors(const Json& rows) {
     std::vector<Measured> all;
     for (const Json& row : rows) {
-        if (row.at("classification") == "post" && !row.at("jitter").flag()) {
-            all.push_back(
-                {row.at("spacing").number(), row.at("error").at("sampling").at("rmse").number()});
+        if (row.at("classify") == "post" && !row.at("jitter").flag()) {
+            all.push_back({row.at("layer_spacing").number(),
+                           row.at("error").at("sampling").at("rmse").number()});
         }
     }
     std::sort(all.begin(), all.end(),

@@ -141,10 +141,10 @@ Json worstPixel(const std::vector<glm::dvec4>& picture, const std::vector<glm::d
 const Json* rowToTrace(const Json& rows) {
     const Json* best = nullptr;
     const auto rank = [](const Json& row) {
-        return std::pair(std::abs(std::log(row.at("spacing").number())), totalRmse(row));
+        return std::pair(std::abs(std::log(row.at("layer_spacing").number())), totalRmse(row));
     };
     for (const Json& row : rows) {
-        if (row.at("classification") == name(Classification::Post) &&
+        if (row.at("classify") == name(Classification::Post) &&
             (best == nullptr || rank(row) < rank(*best))) {
             best = &row;
         }

@@ -12,8 +12,8 @@ NAMES = {"post": "post-classified", "preclassified": "pre-classified", "preinteg
          "rgba8": "RGBA8", "rgba16f": "RGBA16F"}
 FRACTIONS = {0.125: "⅛", 0.25: "¼", 0.5: "½", 0.75: "¾"}
 # What one row's settings are called by, in this order; settings that no two rows differ in go without saying.
-SETTINGS = ("classification", "spacing", "layers", "target", "termination", "jitter")
-FAMILY = ("layers", "classification", "target", "termination", "jitter")
+SETTINGS = ("classify", "layer_spacing", "layers_per_plane", "target", "termination", "jitter")
+FAMILY = ("layers_per_plane", "classify", "target", "termination", "jitter")
 
 
 @dataclass(eq=False)
@@ -63,10 +63,10 @@ class Row:
 def say(row, setting):
     """One setting in words: "½ voxel", "8 layers a plane"."""
     value = row.raw.get(setting)
-    if setting == "spacing":
+    if setting == "layer_spacing":
         text = FRACTIONS.get(row.spacing, f"{row.spacing:g}")
         return f"{text} voxel" if row.spacing <= 1 else f"{text} voxels"
-    if setting == "layers":
+    if setting == "layers_per_plane":
         return row.ratio if row.ratio in ("slicing", "ray casting") else f"{value} layers a plane"
     if setting == "termination":
         return "never stops" if value == "off" else f"stops at {value:.3g}" if number(value) else "termination unknown"
@@ -128,20 +128,20 @@ class Errors:
 
 def _row(raw, where):
     times = page_input.section(raw, "frame_ms")
-    spacing, median = number(raw.get("spacing")), number(times.get("median"))
+    spacing, median = number(raw.get("layer_spacing")), number(times.get("median"))
     planes = number(page_input.section(raw, "plan").get("planes"))
-    layers = number(raw.get("layers"))
-    for name, value, good in (("spacing", spacing, spacing is not None and spacing > 0),
-                              ("layers", layers, layers is not None and layers >= 0),
+    layers = number(raw.get("layers_per_plane"))
+    for name, value, good in (("layer_spacing", spacing, spacing is not None and spacing > 0),
+                              ("layers_per_plane", layers, layers is not None and layers >= 0),
                               ("plan.planes", planes, planes is not None and planes >= 0),
                               ("frame_ms.median", median, median is not None and median > 0)):
         if not good:
             raise BadInput(f"{where}.{name} is no number that makes sense; run `slabcast error` again")
-    for name in ("id", "classification", "target"):
+    for name in ("id", "classify", "target"):
         if not isinstance(raw.get(name), str) or not raw[name]:
             raise BadInput(f"{where}.{name} is no text; run `slabcast error` again")
     low, high = number(times.get("min")), number(times.get("max"))
-    row = Row(raw, raw["id"], raw["classification"], raw["target"], bool(raw.get("jitter")),
+    row = Row(raw, raw["id"], raw["classify"], raw["target"], bool(raw.get("jitter")),
               str(raw.get("ratio", "hybrid")), int(layers), spacing, int(planes), median,
               median if low is None else min(low, median), median if high is None else max(high, median))
     if row.rmse is None or row.rmse < 0:

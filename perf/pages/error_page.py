@@ -124,7 +124,7 @@ def run_facts(errors):
     settings = " · ".join(esc(conditions[name]) for name in ("space", "lattice") if conditions.get(name))
     entries = [entry for entry in errors.raw.get("left_out") or [] if isinstance(entry, dict)]
     left_out = "".join(
-        f'<p class="note">Left out: {esc(NAMES.get(entry.get("classification"), entry.get("classification")))}: '
+        f'<p class="note">Left out: {esc(NAMES.get(entry.get("classify"), entry.get("classify")))}: '
         f'{esc(entry.get("why", ""))}</p>' for entry in entries)
     return facts([
         *device_facts(errors.raw),
@@ -166,7 +166,7 @@ def work_precision(errors):
 
 
 def _setting_of(rows):
-    return esc(", ".join(say(rows[0], name) for name in ("spacing", "termination")))
+    return esc(", ".join(say(rows[0], name) for name in ("layer_spacing", "termination")))
 
 
 def planes_caption(errors):

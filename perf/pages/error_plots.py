@@ -196,7 +196,7 @@ def convergence(errors, narrow):
         _log_axes(axes, plain_x=False)
         axes.set_title(NAMES.get(family[0].classification, family[0].classification), pad=16,
                        color=hue(errors, family[0].classification))
-        axes.annotate(", ".join(say(family[0], name) for name in FAMILY if name != "classification"), (0, 1),
+        axes.annotate(", ".join(say(family[0], name) for name in FAMILY if name != "classify"), (0, 1),
                       xycoords="axes fraction", xytext=(0, 4), textcoords="offset points", fontsize=6.8, color=MUTED)
         spacings = sorted({1 / row.spacing for row in family})
         axes.set_xticks(spacings, [f"{x:g}" for x in spacings])

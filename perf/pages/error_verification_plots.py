@@ -142,5 +142,5 @@ def key_of_ray():
 
 
 def family_name(family):
-    name = NAMES.get(family.get("classification"), str(family.get("classification")))
+    name = NAMES.get(family.get("classify"), str(family.get("classify")))
     return name + (", jitter" if family.get("jitter") else "")

@@ -55,13 +55,13 @@ class Accuracy(CliTest):
         return [row for row in self.report["rows"] if all(row[key] == value for key, value in where.items())]
 
     def test_every_setting_is_a_row_with_all_that_was_measured(self):
-        settings = [(row["spacing"], row["layers"], row["target"]) for row in self.rows()]
+        settings = [(row["layer_spacing"], row["layers_per_plane"], row["target"]) for row in self.rows()]
         self.assertEqual(len(settings), len(set(settings)))
         self.assertEqual(set(settings), {(s, n, t) for s in self.SPACINGS for n in self.LAYERS for t in self.TARGETS})
         for key in ("command", "commit", "date", "device", "volume", "conditions", "axes", "reference"):
             self.assertTrue(self.report[key], key)
         for row in self.rows():
-            self.assertEqual(row["ratio"], {1: "slicing", 0: "ray casting"}[row["layers"]])
+            self.assertEqual(row["ratio"], {1: "slicing", 0: "ray casting"}[row["layers_per_plane"]])
             self.assertEqual(row["frame_ms"]["n"], 3)
             self.assertTrue(self.report["started"] <= row["date"] <= self.report["date"])
             self.assertGreater(row["counters"]["volume_fetches"], 0)
@@ -96,7 +96,7 @@ class Accuracy(CliTest):
                 self.assertAlmostEqual(error["bias"], sum(colours) / 3, places=14)
                 self.assertTrue(error["max"] > 1 / 255 or error["visible_share"] == 0)
             self.assertTrue(0 <= row["flip"]["mean"] <= row["flip"]["max"] <= 1)
-        coarse, fine = self.rows(layers=0, target="rgba16f")[::3]
+        coarse, fine = self.rows(layers_per_plane=0, target="rgba16f")[::3]
         self.assertGreater(coarse["flip"]["mean"], fine["flip"]["mean"])
         self.assertGreater(coarse["error"]["total"]["visible_share"], fine["error"]["total"]["visible_share"])
 
@@ -124,9 +124,9 @@ class Accuracy(CliTest):
 
     def test_this_volumes_own_convergence_is_judged(self):
         (family,) = self.report["convergence"]
-        self.assertEqual((family["classification"], family["expected_order"]), ("post", 2))
+        self.assertEqual((family["classify"], family["expected_order"]), ("post", 2))
         self.assertEqual([level["rmse"] for level in family["levels"]],
-                         [row["error"]["sampling"]["rmse"] for row in self.rows(target="rgba16f", layers=0)])
+                         [row["error"]["sampling"]["rmse"] for row in self.rows(target="rgba16f", layers_per_plane=0)])
         self.assertEqual(family["as_expected"],
                          family["asymptotic"] and abs(family["order"] - 2) <= 0.2)
 
@@ -134,7 +134,7 @@ class Accuracy(CliTest):
         ray = json.loads((self.measured / "err" / "worst_ray.json").read_text())
         self.assertEqual({**self.report["worst_ray"], "layers": ray["layers"]}, ray)
         (row,) = (row for row in self.rows() if row["id"] == ray["row"])
-        self.assertEqual((row["spacing"], ray["pixel"]), (1, row["worst_pixel"]["pixel"]))
+        self.assertEqual((row["layer_spacing"], ray["pixel"]), (1, row["worst_pixel"]["pixel"]))
         self.assertEqual(row["worst_pixel"]["error"], row["error"]["total"]["max"])
         for sampled, exact, reference in zip(ray["layers"][-1]["gathered"], ray["exact"], ray["reference"]):
             self.assertAlmostEqual(exact, reference, places=8)  # another path to the same integral
@@ -148,7 +148,7 @@ class Accuracy(CliTest):
 
     def test_a_step_is_predicted_beside_the_measured_one(self):
         found = self.report["predicted_step"]
-        good = [row["spacing"] for row in self.rows(target="rgba16f", layers=0)
+        good = [row["layer_spacing"] for row in self.rows(target="rgba16f", layers_per_plane=0)
                 if row["error"]["sampling"]["rmse"] <= found["threshold_rmse"]]
         self.assertEqual(found["measured_voxels"], max(good, default=None))
         self.assertAlmostEqual(found["predicted_mm"],
@@ -164,9 +164,9 @@ class Accuracy(CliTest):
         self.assertEqual(files & {"refinement.csv", "worst_ray.csv", "worst_ray.json"}, set())
 
     def test_error_falls_with_the_spacing_squared(self):
-        rays = self.rows(target="rgba16f", layers=0)  # what is blended once is rounded once
+        rays = self.rows(target="rgba16f", layers_per_plane=0)  # what is blended once is rounded once
         totals = [row["error"]["total"]["rmse"] for row in rays]
-        self.assertEqual([row["spacing"] for row in rays], list(self.SPACINGS))
+        self.assertEqual([row["layer_spacing"] for row in rays], list(self.SPACINGS))
         self.assertEqual(totals, sorted(totals, reverse=True))
         self.assertAlmostEqual(rays[-1]["order"]["sampling"], 2.0, delta=0.25)  # midpoints of a smooth field
         coarse, fine = (row["error"]["sampling"]["rmse"] for row in rays[-2:])
@@ -175,7 +175,7 @@ class Accuracy(CliTest):
         self.assertEqual(set(rays[0]["order"].values()), {None})
 
     def test_rounding_of_eight_bits_grows_with_the_planes(self):
-        gpu = [row["error"]["gpu"]["rmse"] for row in self.rows(target="rgba8", layers=1)]
+        gpu = [row["error"]["gpu"]["rmse"] for row in self.rows(target="rgba8", layers_per_plane=1)]
         self.assertGreater(gpu[-1], 2 * gpu[0])
 
     def test_fronts_hold_what_nothing_beats(self):
@@ -266,15 +266,15 @@ class Accuracy(CliTest):
         finished = self.copied()
         key, first, *others = finished.read_text().splitlines()
         measured = json.loads(first)
-        grid = self.one_row(self.GRID[1], size="48x48", layer_spacing=measured["spacing"], target=measured["target"],
-                            layers_per_plane=measured["layers"])
+        grid = self.one_row(self.GRID[1], size="48x48", layer_spacing=measured["layer_spacing"], target=measured["target"],
+                            layers_per_plane=measured["layers_per_plane"])
         reference = self.folder / "err" / "reference.f64"
         header, pixels = reference.read_bytes().split(b"\n", 1)
 
         def spoilt(**members):
             return "\n".join((key, json.dumps({**measured, **members}), *others))
         stores = (spoilt(frame_ms=3), spoilt(frame_ms={"median": "3"}), spoilt(pictures={"thumbnail": 1}),
-                  spoilt(pictures=[]), spoilt(error=None), spoilt(counters={}), spoilt(spacing="1"), spoilt(id=1),
+                  spoilt(pictures=[]), spoilt(error=None), spoilt(counters={}), spoilt(layer_spacing="1"), spoilt(id=1),
                   spoilt(date=None), "\n".join((key, "7", first)), "7\n" + first, "", "{\n")
         headers = (json.dumps({**json.loads(header), "seconds": "1"}).encode(), b"[]", b"", header)
         for k, rows in enumerate(stores):
@@ -291,16 +291,16 @@ class Accuracy(CliTest):
         self.succeeds(*self.one_row("phantom:marschner-lobb:16", layers_per_plane="64,0"), env=self.own_cache(),
                       notes=self.PAGE)
         (row,) = self.new_report()["rows"]
-        self.assertEqual((row["layers"], row["ratio"]), (0, "ray casting"))
+        self.assertEqual((row["layers_per_plane"], row["ratio"]), (0, "ray casting"))
 
     def test_a_classification_that_does_not_fit_is_left_out(self):
         """A cube of 48 has 442368 bytes as colours of four, and 110592 as voxels."""
         too_much = ("phantom:shells:48", "--gpu-budget", "0.2")
         self.succeeds(*self.one_row(*too_much, classify="preclassified,post"), env=self.own_cache(), notes=self.PAGE)
         report = self.new_report()
-        self.assertEqual([row["classification"] for row in report["rows"]], ["post"])
+        self.assertEqual([row["classify"] for row in report["rows"]], ["post"])
         (left,) = report["left_out"]
-        self.assertEqual(left["classification"], "preclassified")
+        self.assertEqual(left["classify"], "preclassified")
         self.assertRegex(left["why"], "442368 bytes.*--downsample 2")
         self.assertIn("442368 bytes", (self.folder / "err" / "report.html").read_text())
         self.assertEqual(self.report["left_out"], [])
@@ -362,7 +362,7 @@ class Accuracy(CliTest):
         reach = [row for row in self.rows() if row["error"]["total"]["rmse"] <= target]
         best = min(reach, key=lambda row: row["frame_ms"]["median"])
         text = self.succeeds(*scene, "--target-error", repr(target), env=self.env)
-        self.assertRegex(text, rf"(?m)^target error .*{best['target']}, a layer every {best['spacing']:g} voxels, .*"
+        self.assertRegex(text, rf"(?m)^target error .*{best['target']}, a layer every {best['layer_spacing']:g} voxels, .*"
                                r"measured with this volume and transfer function$")
         self.assertAlmostEqual(float(re.search(r"(?m)^error: RMSE ([\d.e-]+)", text).group(1)),
                                best["error"]["total"]["rmse"], delta=1e-6)

@@ -88,10 +88,10 @@ TEST(Convergence, AWrongLimitShowsInTheTwoOrders) {
 }
 
 Json row(const char* classification, double spacing, double rmse, int layers = 0) {
-    return {{"classification", classification},
+    return {{"classify", classification},
             {"jitter", false},
-            {"spacing", spacing},
-            {"layers", layers},
+            {"layer_spacing", spacing},
+            {"layers_per_plane", layers},
             {"error", {{"sampling", {{"rmse", rmse}}}}}};
 }
 
@@ -108,7 +108,7 @@ TEST(Convergence, FamiliesAreJudgedByWhatTheirClassificationPromises) {
         for (const Json& family : familyConvergence(rows, hasSteps)) {
             EXPECT_EQ(family.at("levels").size(), 4U);
             EXPECT_TRUE(family.at("asymptotic").flag());
-            found += family.at("classification").text() +
+            found += family.at("classify").text() +
                      (family.at("as_expected").flag() ? " right, " : " wrong, ");
         }
         return found;

@@ -120,8 +120,8 @@ TEST(ErrorTableJson, WhatIsDamagedIsRefused) {
     EXPECT_FALSE(parseErrorTable(""));
     EXPECT_FALSE(parseErrorTable(text.substr(0, text.size() / 2)));
     EXPECT_FALSE(parseErrorTable("{\"version\": 1, \"rows\": []}"));
-    for (const char* key : {"volume", "space", "size", "spacing", "layers", "classification",
-                            "target", "termination", "jitter", "rmse", "commit"}) {
+    for (const char* key : {"volume", "space", "size", "layer_spacing", "layers_per_plane",
+                            "classify", "target", "termination", "jitter", "rmse", "commit"}) {
         Json content = *Json::parse(text);
         content["rows"][0][key] = Json::object();
         const auto read = parseErrorTable(content.dump());

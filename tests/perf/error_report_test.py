@@ -47,7 +47,7 @@ def row(classification, target, termination, jitter, spacing, layers):
     name = f"{classification}_{target}_s{spacing}_l{layers}_t{termination}{'_j' if jitter else ''}"
     fetches = 16_000 * total * (0.7 if termination != "off" else 1)
     return {
-        "id": name, "spacing": spacing, "layers": layers, "classification": classification, "target": target,
+        "id": name, "layer_spacing": spacing, "layers_per_plane": layers, "classify": classification, "target": target,
         "ratio": {0: "ray casting", 1: "slicing"}.get(layers, "hybrid"), "termination": termination,
         "jitter": jitter,
         "plan": {"planes": planes, "layers_per_plane": layers or total, "layers": total, "layer_spacing_mm": spacing,
@@ -133,9 +133,9 @@ def measured(spacings=(2, 0.5), layers=(1, 16, 0), jitters=(False, True), termin
         "conditions": {"size": [160, 160], "camera": [0, 10, 2.5], "fov_degrees": 40, "transfer_function": "CT bone",
                        "space": "display", "lattice": "planar", "tighten": True, "skip": "auto", "form": "auto",
                        "texel_format": "r16", "smallest_voxel_edge_mm": 1.0, "frames_per_row_at_most": 5, "quick": True},
-        "left_out": [{"classification": "emission", "why": "this device lacks what it needs"}],
+        "left_out": [{"classify": "emission", "why": "this device lacks what it needs"}],
         "reference": {"seconds": 6.1, "tolerance": 1e-10, "size": [160, 160], "picture": "pictures/reference.png"},
-        "convergence": [{**study("", "", 2, 2), "classification": name, "jitter": False} for name in CLASSIFICATIONS],
+        "convergence": [{**study("", "", 2, 2), "classify": name, "jitter": False} for name in CLASSIFICATIONS],
         "refinement": refinement(), "predicted_step": PREDICTED,
         "worst_ray": {key: value for key, value in worst_ray().items() if key != "layers"},
         "rows": rows, "front": front_of(rows, milliseconds), "front_by_fetches": front_of(rows, fetches)}
@@ -204,7 +204,7 @@ class WholePageTest(unittest.TestCase):
         for budget, cells in lines:
             shown = re.findall(r"<td>(?:<b>)?([^<]+)", cells)
             for name, value in zip(CLASSIFICATIONS, shown, strict=True):
-                within = [rmse(entry) for entry in self.data["rows"] if entry["classification"] == name
+                within = [rmse(entry) for entry in self.data["rows"] if entry["classify"] == name
                           and milliseconds(entry) <= float(budget.replace(",", ""))]
                 self.assertEqual(value, f"{min(within):.2e}".replace("e-0", "e−") if within else "–")
 
@@ -266,7 +266,7 @@ class ErrorReportTest(ReportTest):
 
     def test_lives_without_the_optional_keys(self):
         entry = row("post", "rgba8", "off", False, 1, 0)
-        kept = {name: entry[name] for name in ("id", "spacing", "layers", "classification", "target", "plan")}
+        kept = {name: entry[name] for name in ("id", "layer_spacing", "layers_per_plane", "classify", "target", "plan")}
         kept.update(error={"total": {"rmse": 0, "psnr": None}, "sampling": None, "table": None, "gpu": None},
                     frame_ms={"median": 5.0}, counters=None)
         (self.folder / "error.json").write_text(json.dumps({"rows": [kept], "front": [0], "front_by_fetches": []}))
@@ -305,7 +305,7 @@ class ErrorReportTest(ReportTest):
             return data
         self.refusal("rows[2].frame_ms.median", spoilt("median", "5", "frame_ms"))
         self.refusal("rows[2].error.total.rmse", spoilt("rmse", None, "error", "total"))
-        self.refusal("rows[2].spacing", spoilt("spacing", 0))
+        self.refusal("rows[2].layer_spacing", spoilt("layer_spacing", 0))
         self.refusal("rows[2].id", spoilt("id", 7))
         data = measured(layers=(0,), jitters=(False,))
         for front in ([len(data["rows"])], ["a"], {}):

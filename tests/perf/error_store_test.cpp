@@ -18,9 +18,9 @@ Json finished(const std::string& id) {
     return {
         {"id", id},
         {"date", "today"},
-        {"spacing", 1.0},
-        {"layers", 8},
-        {"classification", "post"},
+        {"layer_spacing", 1.0},
+        {"layers_per_plane", 8},
+        {"classify", "post"},
         {"target", "rgba8"},
         {"termination", "off"},
         {"jitter", false},

@@ -101,9 +101,9 @@ Json rowsOf(std::initializer_list<std::pair<double, double>> errors) {
     Json rows = Json::list();
     for (const auto& [spacing, rmse] : errors) {
         for (const bool jitter : {false, true}) {
-            rows.push_back({{"classification", "post"},
+            rows.push_back({{"classify", "post"},
                             {"jitter", jitter},
-                            {"spacing", spacing},
+                            {"layer_spacing", spacing},
                             {"error", {{"sampling", {{"rmse", jitter ? 0.0 : rmse}}}}}});
         }
     }
