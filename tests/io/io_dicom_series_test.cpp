@@ -1,4 +1,5 @@
 #include "tests/support/dicom_test_support.h"
+#include "tests/support/open_counter.h"
 
 namespace slabcast::test {
 namespace {
@@ -28,6 +29,31 @@ TEST_F(DicomSeriesTest, severalSeriesAreListedAndOneChosen) {
     options.series = "9.9";
     expectFailure(loadVolume(folder_, options), ErrorCode::InvalidArgument, folder_.string(),
                   "1.2.3.1");
+}
+
+/// Slices whose pixels are long enough to be left in the file for later.
+TEST_F(DicomSeriesTest, filesAreOpenedForTheirHeaderAndForTheirPixels) {
+    for (int z = 0; z < 3; ++z) {
+        DicomElements elements = image(std::string(64 * 64 * 2, '\1'));
+        place(elements.word(0x00280010, 64).word(0x00280011, 64), {0, 0, 3.0 * z});
+        writeDicom(z == 0 ? "first.dcm" : "IM" + std::to_string(z), elements);
+    }
+    OpenCounter counter(folder_);
+    ASSERT_LOADED(loadVolume(folder_));
+    const std::map<std::string, int> twice = {{"first.dcm", 2}, {"IM1", 2}, {"IM2", 2}};
+    EXPECT_EQ(counter.take(), twice);
+
+    LoadOptions options;
+    options.admit = [](const Volume& header) -> Result<void> {
+        EXPECT_EQ(header.geometry.dims, glm::ivec3(64, 64, 3));
+        EXPECT_EQ(header.type, VoxelType::I16);
+        return fail(ErrorCode::VolumeTooLarge, "too large");
+    };
+    const Result<Volume> refused = loadVolume(folder_, options);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::VolumeTooLarge);
+    const std::map<std::string, int> once = {{"first.dcm", 1}, {"IM1", 1}, {"IM2", 1}};
+    EXPECT_EQ(counter.take(), once);
 }
 
 TEST_F(DicomSeriesTest, damagedFilesAreNamed) {

@@ -20,6 +20,17 @@ protected:
     }
 };
 
+// First: OpenImageIO brings DCMTK along.
+TEST_F(LibrariesTest, dcmtkIsLoadedOnFirstUse) {
+    EXPECT_FALSE(isLoaded("libdcmdata"));
+    const Result<Volume> none =
+        loadVolume(write("a.dcm", "no DICOM"), {.process = ReadIn::ThisProcess});
+    ASSERT_FALSE(none);
+    EXPECT_NE(none.error().detail.find("is not DICOM"), std::string::npos) << none.error().detail;
+    EXPECT_TRUE(isLoaded("slabcast_dicom"));
+    EXPECT_TRUE(isLoaded("libdcmdata"));
+}
+
 TEST_F(LibrariesTest, openImageIoIsLoadedOnFirstUse) {
     const auto nrrd = write("a.nrrd", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 5 4 3\n"
                                       "encoding: raw\n\n" +
@@ -38,16 +49,6 @@ TEST_F(LibrariesTest, openImageIoIsLoadedOnFirstUse) {
     ASSERT_TRUE(saved) << saved.error().detail;
     EXPECT_TRUE(isLoaded("slabcast_images"));
     EXPECT_TRUE(isLoaded("libOpenImageIO"));
-}
-
-TEST_F(LibrariesTest, dcmtkIsLoadedOnFirstUse) {
-    EXPECT_FALSE(isLoaded("libdcmdata"));
-    const Result<Volume> none =
-        loadVolume(write("a.dcm", "no DICOM"), {.process = ReadIn::ThisProcess});
-    ASSERT_FALSE(none);
-    EXPECT_NE(none.error().detail.find("is not DICOM"), std::string::npos) << none.error().detail;
-    EXPECT_TRUE(isLoaded("slabcast_dicom"));
-    EXPECT_TRUE(isLoaded("libdcmdata"));
 }
 
 TEST_F(LibrariesTest, filesThatAreNoModuleAreNamed) {

@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "platform/io/base/parse_text.h"
-#include "platform/io/base/readers.h"
+#include "platform/io/dicom/dicom_stream.h"
 
 namespace slabcast {
 
@@ -121,9 +121,63 @@ bool sayTheirTypes(DcmDataset& data) {
     return DcmXfer(data.getOriginalXfer()).isExplicitVR();
 }
 
-OFCondition load(DicomDataset& dataset, const std::filesystem::path& path) {
+OFCondition load(DicomDataset& dataset, DicomStream& stream) {
     dataset.format = std::make_unique<DcmFileFormat>();
-    return dataset.format->loadFile(OFFilename(path.c_str()));
+    dataset.hasMark = stream.hasMark();
+    if (stream.status().bad()) {
+        return stream.status();
+    }
+    dataset.format->transferInit();
+    const OFCondition read = dataset.format->read(stream);
+    dataset.format->transferEnd();
+    return read;
+}
+
+Result<DicomDataset> datasetOf(DicomStream& stream, const std::filesystem::path& path) {
+    DicomDataset dataset;
+    OFCondition loaded = load(dataset, stream);
+    if (!dictionaryIsThere() && (loaded.bad() || !sayTheirTypes(dataset.data()))) {
+        readDictionary();
+        DicomStream again(path); // once for all files
+        loaded = load(dataset, again);
+    }
+    if (loaded.good()) {
+        return dataset;
+    }
+    if (DcmElement* pixels = pixelElement(dataset.data())) {
+        dataset.isWhole = endsBehindPixels(dataset.data()) || holdsAllPixels(path, *pixels);
+        return dataset;
+    }
+    if (dataset.hasMark) {
+        return fail(ErrorCode::FileTruncated,
+                    fmt::format("{}: is cut off or damaged within its header, before any pixels; "
+                                "fetch the file again",
+                                path.string()));
+    }
+    return fail(ErrorCode::FileUnreadable,
+                fmt::format("{}: is not DICOM, or is cut off within its header; check that the "
+                            "file is whole and of the format that its name says",
+                            path.string()));
+}
+
+Result<std::optional<DicomDataset>> open(const std::filesystem::path& path, bool markedOnly) try {
+    setUpLibrary();
+    std::error_code ignored;
+    if (std::filesystem::file_size(path, ignored) == 0 && !markedOnly) {
+        return fail(ErrorCode::FileTruncated,
+                    fmt::format("{}: is empty; fetch the file again", path.string()));
+    }
+    DicomStream stream(path);
+    if (markedOnly && !stream.hasMark()) {
+        return std::optional<DicomDataset>();
+    }
+    return datasetOf(stream, path).map([](DicomDataset&& dataset) {
+        return std::optional(std::move(dataset));
+    });
+} catch (const std::exception& exception) {
+    return fail(ErrorCode::FileUnreadable,
+                fmt::format("{}: cannot be read as DICOM ({}); fetch the file again", path.string(),
+                            exception.what()));
 }
 
 } // namespace
@@ -137,40 +191,14 @@ void readDictionary() {
     dcmDataDict.wrunlock();
 }
 
-Result<DicomDataset> openDicomDataset(const std::filesystem::path& path) try {
-    setUpLibrary();
-    std::error_code ignored;
-    if (std::filesystem::file_size(path, ignored) == 0) {
-        return fail(ErrorCode::FileTruncated,
-                    fmt::format("{}: is empty; fetch the file again", path.string()));
-    }
-    DicomDataset dataset;
-    OFCondition loaded = load(dataset, path);
-    if (!dictionaryIsThere() && (loaded.bad() || !sayTheirTypes(dataset.data()))) {
-        readDictionary();
-        loaded = load(dataset, path);
-    }
-    if (loaded.good()) {
-        return dataset;
-    }
-    if (DcmElement* pixels = pixelElement(dataset.data())) {
-        dataset.isWhole = endsBehindPixels(dataset.data()) || holdsAllPixels(path, *pixels);
-        return dataset;
-    }
-    if (hasDicomMark(path)) {
-        return fail(ErrorCode::FileTruncated,
-                    fmt::format("{}: is cut off or damaged within its header, before any pixels; "
-                                "fetch the file again",
-                                path.string()));
-    }
-    return fail(ErrorCode::FileUnreadable,
-                fmt::format("{}: is not DICOM, or is cut off within its header; check that the "
-                            "file is whole and of the format that its name says",
-                            path.string()));
-} catch (const std::exception& exception) {
-    return fail(ErrorCode::FileUnreadable,
-                fmt::format("{}: cannot be read as DICOM ({}); fetch the file again", path.string(),
-                            exception.what()));
+Result<DicomDataset> openDicomDataset(const std::filesystem::path& path) {
+    return open(path, false).map([](std::optional<DicomDataset>&& dataset) {
+        return *std::move(dataset);
+    });
+}
+
+Result<std::optional<DicomDataset>> openMarkedDicomDataset(const std::filesystem::path& path) {
+    return open(path, true);
 }
 
 DcmElement* pixelElement(DcmDataset& data) {

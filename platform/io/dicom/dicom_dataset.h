@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <dcmtk/dcmdata/dctk.h>
@@ -17,6 +18,7 @@ namespace slabcast {
 struct DicomDataset {
     std::unique_ptr<DcmFileFormat> format; // never null
     bool isWhole = true;                   // false: nothing after its last element could be read
+    bool hasMark = false;                  // DICOM's, behind the preamble
 
     DcmDataset& data() const { return *format->getDataset(); }
 };
@@ -24,6 +26,8 @@ struct DicomDataset {
 /// The one place where a DICOM file is opened. DCMTK is silenced, for good, and knows its decoders
 /// from then on. Fails: FileTruncated (empty; cut within its header), FileUnreadable (not DICOM).
 Result<DicomDataset> openDicomDataset(const std::filesystem::path& path);
+/// The same of a file with DICOM's mark; nothing of any other.
+Result<std::optional<DicomDataset>> openMarkedDicomDataset(const std::filesystem::path& path);
 
 /// DCMTK's dictionary of elements is a text that takes 25 ms to read, at its first use. Files whose
 /// elements say their types need none, so slabcast-read begins without; this reads it after all.

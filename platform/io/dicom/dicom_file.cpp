@@ -221,14 +221,9 @@ void checkPixelsThere(DicomFile& file, const DicomDataset& dataset, std::int64_t
     }
 }
 
-} // namespace
-
-Result<DicomFile> openDicomFile(const std::filesystem::path& path,
-                                const std::vector<std::string>& moreKeys) try {
-    const Result<DicomDataset> dataset = openDicomDataset(path);
-    if (!dataset) {
-        return tl::unexpected(dataset.error());
-    }
+Result<DicomFile> fileOf(const std::filesystem::path& path, DicomDataset&& opened,
+                         const std::vector<std::string>& moreKeys) try {
+    const auto dataset = std::make_shared<DicomDataset>(std::move(opened));
     const DicomHeader header(dataset->data());
     DicomFile file;
     file.path = path;
@@ -240,7 +235,7 @@ Result<DicomFile> openDicomFile(const std::filesystem::path& path,
     file.series = header.text(DCM_SeriesInstanceUID);
     file.description = oneLine(header.text(DCM_SeriesDescription));
     file.modality = header.text(DCM_Modality);
-    if (!hasDicomMark(path) && file.sopClass.empty() && !pixelElement(dataset->data())) {
+    if (!dataset->hasMark && file.sopClass.empty() && !pixelElement(dataset->data())) {
         return fail(ErrorCode::FileUnreadable,
                     fmt::format("{}: is not DICOM; check that the file is whole and of the format "
                                 "that its name says",
@@ -269,11 +264,33 @@ Result<DicomFile> openDicomFile(const std::filesystem::path& path,
         setTable(file, header);
     }
     setProperties(file, header, moreKeys);
+    file.dataset = dataset;
     return file;
 } catch (const std::exception& exception) {
     return fail(ErrorCode::FileUnreadable,
                 fmt::format("{}: cannot be read as DICOM ({}); fetch the file again", path.string(),
                             exception.what()));
+}
+
+} // namespace
+
+Result<DicomFile> openDicomFile(const std::filesystem::path& path,
+                                const std::vector<std::string>& moreKeys) {
+    return openDicomDataset(path).and_then(
+        [&](DicomDataset&& dataset) { return fileOf(path, std::move(dataset), moreKeys); });
+}
+
+Result<std::optional<DicomFile>> openMarkedDicomFile(const std::filesystem::path& path,
+                                                     const std::vector<std::string>& moreKeys) {
+    return openMarkedDicomDataset(path).and_then(
+        [&](std::optional<DicomDataset>&& dataset) -> Result<std::optional<DicomFile>> {
+            if (!dataset) {
+                return std::optional<DicomFile>();
+            }
+            return fileOf(path, *std::move(dataset), moreKeys).map([](DicomFile&& file) {
+                return std::optional(std::move(file));
+            });
+        });
 }
 
 std::string describeWithoutPixels(const DicomFile& file) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -47,6 +48,8 @@ struct DicomTable {
     std::vector<std::uint16_t> values;
 };
 
+struct DicomDataset;
+
 /// What a DICOM file's header says, as plain data.
 struct DicomFile {
     std::filesystem::path path;
@@ -71,6 +74,7 @@ struct DicomFile {
     std::vector<std::string> notes;
     std::string spacingFault;   // why there is no spacing, where an element is not to be read
     std::optional<Error> fault; // why its pixels cannot be taken, should they be wanted
+    std::shared_ptr<DicomDataset> dataset; // of pixels that were not taken yet (DicomPixels)
 
     std::int64_t frameCells() const { return std::int64_t{rows} * columns; }
 };
@@ -80,6 +84,9 @@ struct DicomFile {
 /// Fails: FileTruncated (empty; cut within its header), FileUnreadable (not DICOM).
 Result<DicomFile> openDicomFile(const std::filesystem::path& path,
                                 const std::vector<std::string>& moreKeys);
+/// The same of a file with DICOM's mark behind its preamble; nothing of any other.
+Result<std::optional<DicomFile>> openMarkedDicomFile(const std::filesystem::path& path,
+                                                     const std::vector<std::string>& moreKeys);
 
 /// What a file without pixels is, as in "is a structured report and holds no image".
 std::string describeWithoutPixels(const DicomFile& file);

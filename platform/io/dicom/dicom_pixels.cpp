@@ -206,13 +206,10 @@ DicomPixels::DicomPixels(DicomPixels&& other) noexcept = default;
 DicomPixels& DicomPixels::operator=(DicomPixels&& other) noexcept = default;
 
 Result<DicomPixels> DicomPixels::open(const DicomFile& file) {
-    Result<DicomDataset> dataset = openDicomDataset(file.path);
-    if (!dataset) {
-        return tl::unexpected(dataset.error());
-    }
+    SLABCAST_EXPECTS(file.dataset && file.dataset->format, static_cast<double>(file.frames.size()));
     auto opened = std::make_unique<Opened>();
     opened->file = &file;
-    opened->dataset = std::move(*dataset);
+    opened->dataset = std::move(*file.dataset);
     opened->element = pixelElement(opened->dataset.data());
     opened->syntax = opened->dataset.data().getOriginalXfer();
     if (!opened->element) {

@@ -14,8 +14,9 @@ namespace slabcast {
 /// and nothing else done to them.
 class DicomPixels {
 public:
-    /// Opens the file for the second and last time. `file` must outlive it. Fails: as
-    /// openDicomDataset(), and UnsupportedType (a compression that is not read).
+    /// Opens the file for the second and last time, with the header that was read the first time:
+    /// once for a file, whose `dataset` is taken. `file` must outlive it. Fails: UnsupportedType (a
+    /// compression that is not read).
     static Result<DicomPixels> open(const DicomFile& file);
     ~DicomPixels();
     DicomPixels(DicomPixels&& other) noexcept;

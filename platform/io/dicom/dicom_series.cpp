@@ -135,18 +135,18 @@ Result<Content> contentOf(Paths files, const LoadOptions& options, bool everyFil
             return tl::unexpected(goes.error());
         }
         done += kHeadersShare / static_cast<double>(files.size());
-        const bool isMarked = hasDicomMark(path);
-        if (!isMarked &&
-            (isPlainlyOther(path) || isRemnant(path) || (!everyFile && !hasDicomEnding(path)))) {
-            if (!isPlainlyOther(path)) {
-                content.suspects.push_back(path);
-            }
-            continue;
-        }
-        Result<DicomFile> file = openDicomFile(path, keys);
-        if (file) {
-            add(content, std::move(*file));
-        } else if (isMarked || hasDicomEnding(path)) {
+        const bool unmarkedToo =
+            !isPlainlyOther(path) && !isRemnant(path) && (everyFile || hasDicomEnding(path));
+        Result<std::optional<DicomFile>> file =
+            unmarkedToo ? openDicomFile(path, keys).map([](DicomFile&& any) {
+                return std::optional(std::move(any));
+            })
+                        : openMarkedDicomFile(path, keys);
+        if (file && *file) {
+            add(content, **std::move(file));
+        } else if (file && !isPlainlyOther(path)) {
+            content.suspects.push_back(path);
+        } else if (!file && (hasDicomEnding(path) || hasDicomMark(path))) {
             content.broken.push_back({file.error(), ""});
         }
     }
@@ -272,11 +272,11 @@ Result<DicomSeries> findDicomSeries(const std::filesystem::path& folder,
 bool hasSiblings(const DicomFile& file) {
     Paths files = filesIn(file.path.parent_path().empty() ? "." : file.path.parent_path());
     return std::any_of(files.begin(), files.end(), [&](const std::filesystem::path& path) {
-        if (path.filename() == file.path.filename() || !hasDicomMark(path)) {
+        if (path.filename() == file.path.filename()) {
             return false;
         }
-        const Result<DicomFile> other = openDicomFile(path, {});
-        return other && other->hasPixels && other->series == file.series;
+        const Result<std::optional<DicomFile>> other = openMarkedDicomFile(path, {});
+        return other && *other && (*other)->hasPixels && (*other)->series == file.series;
     });
 }
 

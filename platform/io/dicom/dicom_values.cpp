@@ -146,6 +146,9 @@ Result<DicomVoxels> DicomVoxels::inside(Volume& volume, const DicomImages& image
     if (!bytes) {
         return tl::unexpected(bytes.error());
     }
+    if (const Result<void> wanted = admitted(options, volume); !wanted) {
+        return tl::unexpected(wanted.error());
+    }
     volume.voxels = makeVoxels(options, static_cast<std::size_t>(*bytes));
     return DicomVoxels(volume, types.widest, options);
 }
