@@ -39,9 +39,9 @@ bool areCountersOrNull(const Json& value) {
 
 constexpr Member kMembers[] = {{"/id", isText},
                                {"/date", isText},
-                               {"/spacing", isNumber},
-                               {"/layers", isNumber},
-                               {"/classification", isText},
+                               {"/layer_spacing", isNumber},
+                               {"/layers_per_plane", isNumber},
+                               {"/classify", isText},
                                {"/target", isText},
                                {"/termination", isThere},
                                {"/jitter", isThere},
