@@ -47,7 +47,7 @@ for target in "${targets[@]}"; do
     mkdir -p "$corpus" "$folder/findings/$target"
     cp -n tests/fuzz/seeds/"$target"/* "$corpus" 2>/dev/null || true
     if ! SLABCAST_FUZZ=$target "$program" "$effort" -seed="${SEED:-0}" -print_final_stats=1 -artifact_prefix="$folder/findings/$target/" \
-        -max_len=1024 -timeout=5 -rss_limit_mb=2048 "$corpus" >"$folder/$target.log" 2>&1; then
+        -max_len=1024 -timeout=30 -rss_limit_mb=2048 "$corpus" >"$folder/$target.log" 2>&1; then
         status=1
         grep -aE "ERROR|SUMMARY|runtime error|Test unit written" "$folder/$target.log" | head -n 5 || true
     fi
