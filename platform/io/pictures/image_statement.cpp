@@ -88,7 +88,7 @@ void takeImageJValues(const Lines& lines, ImageStatement& statement) {
     const double intercept = parseReal(valueOf(lines, "c0")).value_or(0.0);
     const double slope = parseReal(valueOf(lines, "c1")).value_or(0.0);
     if (function != 0 || !std::isfinite(slope) || slope == 0.0 || !std::isfinite(intercept)) {
-        statement.notes.push_back(
+        statement.notes.emplace_back(
             "its calibration of values is no straight line and left aside: values are as stored");
         return;
     }

@@ -14,7 +14,8 @@ std::string spelledAlike(std::string_view unit) {
     std::string text = lowerCase(trimmed(unit));
     for (const std::string_view micro : {"\xC2\xB5", "\xCE\xBC", "\xB5"}) {
         if (text.starts_with(micro)) {
-            text.replace(0, micro.size(), "u");
+            text.erase(0, micro.size() - 1);
+            text.front() = 'u';
         }
     }
     if (text.size() > 2 && text.ends_with('s')) {
