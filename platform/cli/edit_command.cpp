@@ -10,7 +10,7 @@
 #include "platform/cli/report_files.h"
 #include "platform/cli/skip_options.h"
 #include "platform/cli/transfer_choice.h"
-#include "platform/json/json_checks.h"
+#include "platform/json/read_text.h"
 
 namespace slabcast {
 

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <optional>
 
 #include "core/base/number_text.h"
 #include "perf/settings_json.h"
+#include "platform/json/read_text.h"
 
 namespace slabcast {
 
@@ -60,13 +59,6 @@ void forgetRivals(Settings& settings, const Setting& given) {
     }
 }
 
-/// Nothing where it cannot be read.
-std::optional<std::string> contentOf(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::string text(std::istreambuf_iterator<char>(file), {});
-    return file.is_open() && !file.bad() ? std::optional(std::move(text)) : std::nullopt;
-}
-
 } // namespace
 
 std::string flagOf(const Setting& setting) {
@@ -112,13 +104,11 @@ void bindSettingsFile(Command& command, Settings& settings, std::vector<std::str
              const auto named = [&](Error error) {
                  return Error{error.code, file + ": " + error.detail};
              };
-             const std::optional<std::string> text = contentOf(file);
-             if (!text) {
-                 return fail(ErrorCode::InvalidArgument, file + ": cannot be read; check the path");
-             }
-             const std::optional<Json> all = Json::parse(*text);
-             return all ? takeSettings(settings, *all, left).map_error(named)
-                        : fail(ErrorCode::InvalidArgument, file + ": is no JSON");
+             return readText(file, "file of settings").and_then([&](const std::string& text) {
+                 const std::optional<Json> all = Json::parse(text);
+                 return all ? takeSettings(settings, *all, left).map_error(named)
+                            : fail(ErrorCode::InvalidArgument, file + ": is no JSON");
+             });
          }});
 }
 

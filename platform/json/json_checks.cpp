@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "core/base/number_text.h"
 
@@ -103,19 +100,6 @@ Result<json> parseJson(std::string_view text, std::string_view sourceName, Error
         return fail(code, std::string(sourceName) + ": " + withoutTag(exception.what()) +
                               "; correct the JSON there");
     }
-}
-
-Result<std::string> readText(const std::string& path, const std::string& what) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) {
-        return fail(ErrorCode::FileNotFound, path + ": no such " + what + "; check the path");
-    }
-    std::ifstream file(path, std::ios::binary);
-    if (!file || std::filesystem::is_directory(path, ignored)) {
-        return fail(ErrorCode::FileUnreadable,
-                    path + ": cannot be read; check that it is a file and its permissions");
-    }
-    return std::string{std::istreambuf_iterator<char>(file), {}};
 }
 
 } // namespace slabcast

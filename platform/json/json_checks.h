@@ -51,7 +51,4 @@ Checked<std::string> textAt(const nlohmann::json& object, const std::string& at,
 Result<nlohmann::json> parseJson(std::string_view text, std::string_view sourceName,
                                  ErrorCode code);
 
-/// A file's whole text; `what` it is, for the refusal. Fails: FileNotFound, FileUnreadable.
-Result<std::string> readText(const std::string& path, const std::string& what);
-
 } // namespace slabcast

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "platform/json/json_checks.h"
+#include "platform/json/read_text.h"
 
 namespace slabcast {
 

@@ -56,7 +56,7 @@ class BadUsage(CliTest):
         for name, (content, _) in bad.items():
             self.write(name, content)
         self.all_misused([(("render", PHANTOM, "-o", "p.png", "--settings", name), f"--settings: {name}: {cause}")
-                          for name, (_, cause) in (*bad.items(), ("missing.json", ("", "cannot be read; check the path")))])
+                          for name, (_, cause) in (*bad.items(), ("missing.json", ("", "no such file of settings; check the path")))])
 
     def test_options_that_would_do_nothing(self):
         """Each is refused by name, with what makes it idle."""

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "platform/io/base/parse_text.h"
-#include "platform/io/base/readers.h"
 #include "platform/io/dicom/dicom_dataset.h"
 #include "platform/io/dicom/dicom_header.h"
 #include "platform/io/dicom/dicom_places.h"

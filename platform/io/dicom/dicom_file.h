@@ -50,7 +50,7 @@ struct DicomTable {
 
 struct DicomDataset;
 
-/// What a DICOM file's header says, as plain data.
+/// What a DICOM file's header says, as plain data, with what its pixels are read by.
 struct DicomFile {
     std::filesystem::path path;
     std::string sopClass;
