@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian or Ubuntu packages that a step needs, and only what is missing.
 # Where another package manager is at work, waits for it.
-# usage: platform/packages.sh GROUP...        groups: build test demo compilers docs
+# usage: platform/packages.sh GROUP...        groups: build test demo compilers docs mobile
 set -euo pipefail
 
 # group, package, why
@@ -38,7 +38,16 @@ compilers libclang-rt-14-dev its fuzzer and sanitizers
 compilers libc++-14-dev      its standard library
 compilers libc++abi-14-dev   what that builds upon
 compilers emscripten         the compiler for browsers
-docs  doxygen                the reference of the public headers"
+docs  doxygen                the reference of the public headers
+mobile meson                 builds Mesa, whose compilers for mobile GPUs need no hardware
+mobile bison                 Mesa's parsers
+mobile flex                  their words
+mobile python3-mako          Mesa's generated sources
+mobile libdrm-dev            what Mesa's drivers ask the kernel by
+mobile libexpat1-dev         Mesa's settings
+mobile libelf-dev            a dependency of Mesa's tools
+mobile dpkg-dev              fetches Debian's sources
+mobile mmdebstrap            a Debian 13 root, for its newer Mesa"
 
 isInstalled() { dpkg-query --show --showformat='${db:Status-Status}\n' "$1" 2>/dev/null | grep -qx installed; }
 
@@ -54,7 +63,7 @@ asRoot() {
 }
 
 refuse() {
-    echo "packages: $1; groups: build test demo compilers docs" >&2
+    echo "packages: $1; groups: build test demo compilers docs mobile" >&2
     exit 2
 }
 
