@@ -49,7 +49,7 @@ TEST_F(IntervalTest, NotCutIsThePictureOfTheCutOne) {
                 const Picture picture = draw(scene, open, view, kSize);
                 EXPECT_EQ(differingPixels(picture, draw(scene, cut, view, kSize)), 0)
                     << name(open.variant) << ", " << name(lattice);
-                EXPECT_GT(differingPixels(picture, cleared(open, kSize, {})), 300);
+                EXPECT_GT(differingPixels(picture, cleared(open, kSize, {})), 100);
             }
         }
     }
@@ -72,7 +72,7 @@ TEST_F(IntervalTest, NearPlaneAndEyeAreCutAt) {
             EXPECT_EQ(variantFor(open, frame, view.frustum), cut.variant) << distance;
             const Picture picture = draw(scene, open, view, kSize);
             EXPECT_EQ(differingPixels(picture, draw(scene, cut, view, kSize)), 0) << distance;
-            EXPECT_GT(differingPixels(picture, cleared(open, kSize, {})), 300) << distance;
+            EXPECT_GT(differingPixels(picture, cleared(open, kSize, {})), 100) << distance;
         }
     }
 }
