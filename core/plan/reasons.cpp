@@ -31,8 +31,7 @@ constexpr ReasonWords kWords[] = {
     {ReasonId::RatioAsked, "ratio {ratio 0}", "asked for"},
     {ReasonId::RatioOfFewerPlanes, "ratio {ratio 0}",
      "fewer planes than asked for hold all layers"},
-    {ReasonId::RatioUnmeasured, "ratio {ratio 0}",
-     "nothing was measured on this device: a middle ratio"},
+    {ReasonId::RatioUnmeasured, "ratio {ratio 0}", "nothing was measured: {rule 3}"},
     {ReasonId::RatioFastest, "ratio {ratio 0}",
      "fastest of those measured on this device: {measured 0}"},
     {ReasonId::ClassificationOfIntervals, "classification {classification 0}",
@@ -134,6 +133,12 @@ std::string costOfLooks(const double* numbers) {
                                                         : ", not on this device)");
 }
 
+std::string ruleOfRatio(const double* numbers) {
+    return static_cast<RatioRule>(numbers[0]) == RatioRule::WholeRays
+               ? "a software driver loops over whole rays, which says nothing of a GPU"
+               : "the middle of the range that is best on phones";
+}
+
 std::string measuredRatios(const FramePlan& plan) {
     std::string all;
     for (const RatioMeasurement& one : plan.measured) {
@@ -167,6 +172,7 @@ constexpr struct {
                  const double* n) { return std::string(name(static_cast<BlendOrder>(*n))); }},
     {"occupancy", [](const FramePlan&, const double* n) { return occupancy(n); }},
     {"looks", [](const FramePlan&, const double* n) { return costOfLooks(n); }},
+    {"rule", [](const FramePlan&, const double* n) { return ruleOfRatio(n); }},
     {"measured", [](const FramePlan& plan, const double*) { return measuredRatios(plan); }},
 };
 

@@ -98,22 +98,10 @@ Json header(const Stage& stage, int rounds, const RunInfo& run) {
 
 /// All that a row depends on, and which rows there are.
 Json keyOf(const Stage& stage, const SweepDesc& desc, const RunInfo& run) {
-    const Scene& scene = stage.scene();
-    const StageDesc& o = stage.desc();
-    const Texels& texels = scene.texels();
-    Json key = conditionsOf(o);
-    key.update(
-        {{"commit", run.commit},
-         {"device", toJson(stage.caps())},
-         {"voxels", fingerprint(texels.data)},
-         {"texels", Json::list({name(texels.format), texels.valueScale, texels.valueBias})},
-         {"placement", placementKey(scene.geometry())},
-         {"transfer_function", transferKey(scene.look().tf)},
-         {"stereo", o.stereoIpdMm ? Json(*o.stereoIpdMm) : Json()},
-         {"background",
-          o.background ? Json::list({o.background->x, o.background->y, o.background->z}) : Json()},
-         {"layers_per_plane", Json::listOf(desc.layersPerPlane)},
-         {"frames", desc.rounds}});
+    Json key = frameKey(stage.caps(), stage.scene(), stage.desc());
+    key.update({{"commit", run.commit},
+                {"layers_per_plane", Json::listOf(desc.layersPerPlane)},
+                {"frames", desc.rounds}});
     return key;
 }
 
@@ -126,6 +114,24 @@ public:
     /// The rows of the report.
     Result<Json> measure(const std::vector<SweepRow>& rows) {
         return describe(rows).and_then([&](Json described) { return timed(std::move(described)); });
+    }
+
+    /// Of the rows that are drawn as the stage's own settings would be at their ratio.
+    std::vector<RatioMeasurement> ratios() const {
+        std::vector<RatioMeasurement> found;
+        for (std::size_t k = 0; k < plans_.size(); ++k) {
+            const FramePlan& row = plans_[k];
+            Settings settings = stage_.desc().settings;
+            settings.planes.reset();
+            settings.layersPerPlane = row.layersPerPlane;
+            const bool unrolled = row.variant.unroll > 0;
+            settings.form = unrolled ? SegmentForm::Unrolled : SegmentForm::Loop;
+            const Result<FramePlan> own = stage_.plan(settings);
+            if (own && *own == row) {
+                found.push_back({{row.planes, row.layersPerPlane, settings.form}, medians_[k]});
+            }
+        }
+        return found;
     }
 
 private:
@@ -176,6 +182,9 @@ private:
         return race(stage_, racers, {.id = "race", .rounds = desc_.rounds, .show = show}, store_)
             .map([&](const Laps& laps) {
                 addTimes(rows, places_, laps);
+                for (const std::vector<double>& times : laps) {
+                    medians_.push_back(summarise(times).median);
+                }
                 return std::move(rows);
             });
     }
@@ -187,6 +196,7 @@ private:
     ProgressLine progress_;
     std::vector<FramePlan> plans_;
     std::vector<SweepPlace> places_;
+    std::vector<double> medians_; // ms, of each row
 };
 
 } // namespace
@@ -215,7 +225,8 @@ std::vector<SweepRow> sweepRows(const Settings& settings, const SceneFacts& fact
     return rows;
 }
 
-Result<void> sweep(Stage& stage, const SweepDesc& desc, const RunInfo& run, ReportFolder& folder) {
+Result<std::vector<RatioMeasurement>> sweep(Stage& stage, const SweepDesc& desc, const RunInfo& run,
+                                            ReportFolder& folder) {
     SLABCAST_EXPECTS(desc.rounds >= 1, desc.rounds);
     Result<RunStore> store =
         RunStore::open(folder, {"sweep", stage.info().name, run.command, keyOf(stage, desc, run)},
@@ -223,17 +234,17 @@ Result<void> sweep(Stage& stage, const SweepDesc& desc, const RunInfo& run, Repo
     if (!store) {
         return tl::unexpected(store.error());
     }
-    const Result<Json> rows =
-        SweepRun(stage, desc, folder, *store)
-            .measure(sweepRows(stage.desc().settings, stage.scene().facts(), desc.layersPerPlane));
+    SweepRun measuring(stage, desc, folder, *store);
+    const Result<Json> rows = measuring.measure(
+        sweepRows(stage.desc().settings, stage.scene().facts(), desc.layersPerPlane));
     if (!rows) {
         return tl::unexpected(rows.error());
     }
     Json report = header(stage, desc.rounds, run);
     report["rows"] = *rows;
-    return folder.write("sweep.csv", sweepCsv(*rows)).and_then([&] {
-        return folder.write("sweep.json", report.dump(2) + "\n");
-    });
+    return folder.write("sweep.csv", sweepCsv(*rows))
+        .and_then([&] { return folder.write("sweep.json", report.dump(2) + "\n"); })
+        .map([&] { return measuring.ratios(); });
 }
 
 } // namespace slabcast

@@ -131,7 +131,8 @@ void bindOutputs(Command& command, RenderOptions& o) {
     addNumber(command,
               {.flag = "--frames",
                .help = "turn the volume once around in N frames and time them, for --stats; the "
-                       "first is written",
+                       "first is written. Ratios that are left open are measured before, once per "
+                       "device, scene and settings; of a single frame they go by device alone",
                .word = "N",
                .usually = fmt::format("{}", o.frames),
                .group = group,

@@ -80,6 +80,9 @@ inline constexpr int kFewestLayersToSkip = 4;
 /// What speaks for looking at the skip structure.
 enum class LooksCost : std::uint8_t { SpareEightFetches, AsMeasuredHere, AsMeasuredElsewhere };
 
+/// What a ratio goes by that was neither asked for nor measured.
+enum class RatioRule : std::uint8_t { Middle, WholeRays };
+
 inline void because(FramePlan& plan, ReasonId id, std::array<double, 5> numbers = {}) {
     plan.reasons.add({id, numbers});
 }
