@@ -61,38 +61,42 @@ std::vector<SceneFacts> factsOfAllKinds() {
     return all;
 }
 
+/// Whatever the scene and the device.
+void planAll(const Settings& settings, std::set<ShaderVariant>& reached) {
+    static const std::vector<SceneFacts> facts = factsOfAllKinds();
+    for (const SceneFacts& of : facts) {
+        for (const int device : {0, 1, 2, 3}) {
+            gl::Caps caps;
+            caps.isSoftware = device % 2 == 1;
+            caps.framebufferFetch = device / 2 == 1;
+            if (const Result<FramePlan> made = plan(of, settings, caps, {})) {
+                ShaderVariant variant = made->variant;
+                reached.insert(variant);
+                variant.counts = true;
+                reached.insert(variant);
+            }
+        }
+    }
+}
+
 } // namespace
 
 std::set<ShaderVariant> reachableVariants(int choices) {
     std::set<ShaderVariant> reached;
-    const std::vector<SceneFacts> facts = factsOfAllKinds();
-    const auto planAll = [&](const Settings& settings) {
-        for (const SceneFacts& of : facts) {
-            for (const int device : {0, 1, 2, 3}) {
-                gl::Caps caps;
-                caps.isSoftware = device % 2 == 1;
-                caps.framebufferFetch = device / 2 == 1;
-                if (const Result<FramePlan> made = plan(of, settings, caps, {})) {
-                    ShaderVariant variant = made->variant;
-                    reached.insert(variant);
-                    variant.counts = true;
-                    reached.insert(variant);
-                }
-            }
-        }
-    };
     const std::vector<Change> changes = settingsChanges();
-    for (std::size_t a = 0; a < changes.size(); ++a) {
-        for (std::size_t b = choices > 1 ? a + 1 : a; b < (choices > 1 ? changes.size() : a + 1);
-             ++b) {
-            Settings settings;
-            changes[a](settings);
-            if (choices > 1) {
-                changes[b](settings);
+    const std::function<void(const Settings&, std::size_t, int)> choose =
+        [&](const Settings& settings, std::size_t from, int left) {
+            if (left == 0) {
+                planAll(settings, reached);
+                return;
             }
-            planAll(settings);
-        }
-    }
+            for (std::size_t k = from; k < changes.size(); ++k) {
+                Settings changed = settings;
+                changes[k](changed);
+                choose(changed, k + 1, left - 1);
+            }
+        };
+    choose({}, 0, choices);
     return reached;
 }
 

@@ -2,12 +2,15 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <iostream>
+#include <map>
 #include <optional>
 #include <regex>
 #include <string>
 #include <vector>
 
 #include "core/gl/api.h"
+#include "core/gl/debug.h"
 #include "perf/mobile/compile_variants.h"
 #include "perf/mobile/reachable_variants.h"
 #include "platform/egl/egl_context.h"
@@ -20,11 +23,12 @@ namespace {
 using namespace slabcast;
 
 constexpr const char* kUsage =
-    "usage: slabcast-compile [--only REGEX] [--choices 1|2] [--empty-loops] [--half GROUPS] "
+    "usage: slabcast-compile [--only REGEX] [--choices 1|2|3] [--empty-loops] [--half GROUPS] "
     "[--list]\n"
     "Compiles the segment shaders that plans reach, by the driver at hand, and draws a pixel with\n"
     "each. Behind a line {\"variant\": ...} on stderr stands what the driver says of it.\n"
     "  --only REGEX    those whose label it is found in; --list shows labels\n"
+    "  --labels        those whose labels stand on stdin, a line each, in this order\n"
     "  --choices N     settings that differ from the default in N choices [2]\n"
     "  --empty-loops   loops alone, without what they do for layers\n"
     "  --half GROUPS   results of these groups in 16 bits (kHalf... of shader_variant.h)\n"
@@ -34,6 +38,7 @@ struct Request {
     CompileOptions compile;
     std::optional<std::regex> only;
     int choices = 2;
+    bool labels = false;
     bool list = false;
 };
 
@@ -51,13 +56,15 @@ std::optional<Request> parse(int argc, char** argv) try {
     for (int k = 1; k < argc; ++k) {
         const std::string flag = argv[k];
         const char* const value = k + 1 < argc ? argv[k + 1] : "";
-        if (flag == "--list") {
+        if (flag == "--labels") {
+            request.labels = true;
+        } else if (flag == "--list") {
             request.list = true;
         } else if (flag == "--empty-loops") {
             request.compile.loopBodies = false;
         } else if (flag == "--only" && *value != '\0') {
             request.only = std::regex(argv[++k]);
-        } else if (const auto number = numberOf(value, flag == "--half" ? kHalfAll : 2);
+        } else if (const auto number = numberOf(value, flag == "--half" ? kHalfAll : 3);
                    number && (flag == "--choices" || flag == "--half")) {
             (flag == "--half" ? request.compile.measuring.halfGroups : request.choices) = *number;
             ++k;
@@ -72,25 +79,44 @@ std::optional<Request> parse(int argc, char** argv) try {
 
 /// Those that draw; programs that count work are nobody's frame.
 std::vector<ShaderVariant> chosen(const Request& request) {
+    std::map<std::string, ShaderVariant> byLabel;
     std::vector<ShaderVariant> variants;
     for (const ShaderVariant& variant : reachableVariants(request.choices)) {
-        const bool compiledAnyway = request.compile.loopBodies || variant.unroll == 0;
-        if (!variant.counts && compiledAnyway &&
-            (!request.only || std::regex_search(labelOf(variant), *request.only))) {
+        const std::string label = labelOf(variant);
+        const bool fits = !request.only || std::regex_search(label, *request.only);
+        if (!variant.counts && fits && (request.compile.loopBodies || variant.unroll == 0)) {
+            byLabel.emplace(label, variant);
             variants.push_back(variant);
+        }
+    }
+    if (request.labels) {
+        variants.clear();
+        for (std::string label; std::getline(std::cin, label);) {
+            const auto found = byLabel.find(label);
+            if (found == byLabel.end()) {
+                std::fprintf(stderr, "{\"variant\": %s, \"failed\": \"no plan reaches it\"}\n",
+                             Json(label).dump().c_str());
+            } else {
+                variants.push_back(found->second);
+            }
         }
     }
     return variants;
 }
 
 Result<void> compile(const Request& request, const std::vector<ShaderVariant>& variants) {
-    const Result<EglContext> context = EglContext::create();
+    const Result<EglContext> context = EglContext::create({.debug = true});
     if (!context) {
         return tl::unexpected(context.error());
     }
     if (Result<void> loaded = gl::loadApi(context->getProc()); !loaded) {
         return loaded;
     }
+    const gl::DebugOutput heard([](const gl::DebugMessage& message) {
+        std::fprintf(stderr, "%s\n", Json({{"driver", message.text}}).dump().c_str());
+    });
+    // Drivers that work in a thread of their own say nothing to who wants it in the call itself.
+    gl::Disable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
     const auto say = [](const ShaderVariant& variant, const Error* failure) {
         Json line = describe(variant);
         if (failure != nullptr) {
@@ -111,7 +137,9 @@ int run(int argc, char** argv) {
     }
     const std::vector<ShaderVariant> variants = chosen(*request);
     if (variants.empty()) {
-        std::fputs("slabcast-compile: no variant's label fits --only; --list shows them\n", stderr);
+        std::fputs(
+            "slabcast-compile: no variant's label is among those asked for; --list shows them\n",
+            stderr);
         return 2;
     }
     if (request->list) {
