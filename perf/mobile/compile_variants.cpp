@@ -1,6 +1,8 @@
 #include "perf/mobile/compile_variants.h"
 
+#include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include "core/draw/stack_drawer.h"
 #include "core/gl/api.h"
@@ -11,7 +13,8 @@ namespace slabcast {
 
 namespace {
 
-constexpr std::string_view kBodyMark = "// body of the loop";
+// What a loop does for layers, in segment/form/loop.glsl.
+constexpr std::string_view kBody = "addGroup(";
 
 /// A value that no variant's name shows may differ between variants of one name.
 bool isNamed(const AxisInfo& axis) {
@@ -85,16 +88,39 @@ Json describe(const ShaderVariant& variant) {
     return {{"variant", labelOf(variant)}, {"layers", variant.unroll}, {"axes", std::move(axes)}};
 }
 
-std::string withoutLoopBody(const std::string& fragmentText) {
-    std::string kept;
-    for (std::size_t begin = 0; begin < fragmentText.size();) {
-        const std::size_t end = std::min(fragmentText.find('\n', begin), fragmentText.size() - 1);
-        const std::string_view line(fragmentText.data() + begin, end + 1 - begin);
-        kept += line.find(kBodyMark) == std::string_view::npos ? line : "\n";
+std::optional<std::string> withoutLoopBody(const std::string& fragmentText) {
+    std::string text = fragmentText;
+    bool found = false;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        const std::size_t first = text.find_first_not_of(' ', begin);
+        if (first < end && text.compare(first, kBody.size(), kBody) == 0) {
+            std::fill(text.begin() + static_cast<std::ptrdiff_t>(first),
+                      text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+            found = true;
+        }
         begin = end + 1;
     }
-    return kept;
+    return found ? std::optional(std::move(text)) : std::nullopt;
 }
+
+namespace {
+
+Result<ShaderPair> textOf(const ShaderVariant& variant, const CompileOptions& options) {
+    Result<ShaderPair> text = shaderText(variant, options.measuring);
+    if (!text || options.loopBodies) {
+        return text;
+    }
+    std::optional<std::string> empty = withoutLoopBody(text->fragment);
+    if (!empty) {
+        return fail(ErrorCode::ShaderCompile,
+                    labelOf(variant) + ": no line of its own calls " + std::string(kBody) + "...)");
+    }
+    text->fragment = std::move(*empty);
+    return text;
+}
+
+} // namespace
 
 Result<void> compileVariants(std::span<const ShaderVariant> variants, const CompileOptions& options,
                              const CompileListener& listener) {
@@ -104,10 +130,7 @@ Result<void> compileVariants(std::span<const ShaderVariant> variants, const Comp
     }
     for (const ShaderVariant& variant : variants) {
         listener(variant, nullptr);
-        Result<ShaderPair> text = shaderText(variant, options.measuring);
-        if (text && !options.loopBodies) {
-            text->fragment = withoutLoopBody(text->fragment);
-        }
+        const Result<ShaderPair> text = textOf(variant, options);
         const Result<void> drawn =
             text ? pixel.draw(variant, *text) : Result<void>(tl::unexpected(text.error()));
         if (!drawn) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -16,10 +17,10 @@ std::string labelOf(const ShaderVariant& variant);
 /// Its label, its value on every axis and the layers that are written out, 0 of a loop.
 Json describe(const ShaderVariant& variant);
 
-/// A fragment shader without the lines that a comment marks as the body of its loop: what it costs
-/// to set a segment up and to go round. The text as it is where nothing is marked.
+/// A fragment shader of the loop form whose loop composites nothing: what it costs to set a segment
+/// up and to go round. Nothing of a text in which no line of its own calls addGroup().
 /// Tested by: compile_variants_test.cpp
-std::string withoutLoopBody(const std::string& fragmentText);
+std::optional<std::string> withoutLoopBody(const std::string& fragmentText);
 
 struct CompileOptions {
     MeasuringText measuring;

@@ -6,6 +6,7 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
+MESAS = {"22": "Mesa 22.3.6 (Debian 12)", "25": "Mesa 25.0.7 (Debian 13)"}
 COMPILERS = Path(__file__).resolve().parent / "compilers.sh"
 
 
