@@ -17,16 +17,19 @@ class Gpu:
     family: str  # bifrost, valhall or adreno: which figures its compiler gives
     mesa: str  # which of compilers.sh
     chip: str  # as the shim is told
+    # Of instructions, bytes: what Mesa's driver preloads at most (freedreno_devices.py, instr_cache_size, units of 128).
+    # Arm publishes none.
+    cache_bytes: int | None = None
 
 
 GPUS = {gpu.name: gpu for gpu in (
     Gpu("g71", "Mali-G71", "bifrost", "22", "6000"),
     Gpu("g52", "Mali-G52", "bifrost", "22", "7212"),
     Gpu("g57", "Mali-G57", "valhall", "22", "9093"),
-    Gpu("adreno630", "Adreno 630", "adreno", "22", "630"),
-    Gpu("adreno650", "Adreno 650", "adreno", "22", "650"),
-    Gpu("adreno660", "Adreno 660", "adreno", "22", "660"),
-    Gpu("adreno740", "Adreno 740", "adreno", "25", "740"),
+    Gpu("adreno630", "Adreno 630", "adreno", "22", "630", 64 * 128),
+    # The shims know no 650; told of one, they gave the same code for it as for the 660.
+    Gpu("adreno660", "Adreno 650/660", "adreno", "22", "660", 127 * 128),
+    Gpu("adreno740", "Adreno 740", "adreno", "25", "740", 127 * 128),
 )}
 
 

@@ -75,8 +75,11 @@ def head_of(given):
     """What was run, when, of which sources, and by which compilers."""
     return {"command": shlex.join(["perf/mobile/table.py", *sys.argv[1:]]), "commit": commit_of(ROOT),
             "date": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()),
-            "device": {"renderer": "none: compilers only"},
+            "device": {"renderer": "none: compilers only", "version": ", ".join(sorted(
+                {gpus.MESAS[gpus.GPUS[name].mesa] for name in given.gpu}))},
+            "named": table_files.named_rows(), "before": table_files.read_json_rows(table_files.BEFORE),
             "gpus": {name: {"title": gpus.GPUS[name].title, "family": gpus.GPUS[name].family,
+                            "cache_bytes": gpus.GPUS[name].cache_bytes,
                             "mesa": gpus.MESAS[gpus.GPUS[name].mesa]} for name in given.gpu}}
 
 

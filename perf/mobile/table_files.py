@@ -60,6 +60,19 @@ def read_csv(path):
         return {(row["gpu"], row["variant"]): row for row in csv.DictReader(file)}
 
 
+def read_json_rows(path):
+    """The rows of a table as JSON has them, without their axes."""
+    def value(text):
+        try:
+            return float(text)
+        except ValueError:
+            return text
+    return [{"gpu": row["gpu"], "variant": row["variant"], "layers": int(row["layers"]),
+             "layer": {"cost": value(row["cost_per_layer"]) if row["cost_per_layer"] else None},
+             "fragment": {name: value(row[name]) for name in ("cost", "unit", *FIGURES) if row[name]}}
+            for row in read_csv(path).values() if row["cost"]]
+
+
 def named_rows():
     """[{"row": name, "before": label, "general": label, "lean": label or ""}], in their order."""
     with NAMED.open(newline="", encoding="utf-8") as file:
