@@ -27,6 +27,7 @@ GPUS = {gpu.name: gpu for gpu in (
     Gpu("g52", "Mali-G52", "bifrost", "22", "7212"),
     Gpu("g57", "Mali-G57", "valhall", "22", "9093"),
     Gpu("adreno630", "Adreno 630", "adreno", "22", "630", 64 * 128),
+    Gpu("g610", "Mali-G610", "valhall", "25", "a867"),
     # The shims know no 650; told of one, they gave the same code for it as for the 660.
     Gpu("adreno660", "Adreno 650/660", "adreno", "22", "660", 127 * 128),
     Gpu("adreno740", "Adreno 740", "adreno", "25", "740", 127 * 128),
