@@ -90,6 +90,7 @@ void bindError(Command& command, ErrorOptions& o) {
     o.size = {256, 256};
     bindCamera(command, o);
     bindTransfer(command, o);
+    bindDevice(command, o.session);
     bindGrid(command, o.axes);
     bindSettingsBut(command, o.settings,
                     {"layer-spacing", "layers", "planes", "layers-per-plane", "classify", "target",
@@ -138,6 +139,7 @@ void bindSkipbench(Command& command, SkipbenchOptions& o) {
     o.size = {256, 256};
     bindCamera(command, o);
     bindTransfer(command, o);
+    bindDevice(command, o.session);
     bindSetting(command, o.settings, "space");
     bindSetting(command, o.settings, "partition-budget");
     command.checks.emplace_back([&o](const Given& given) -> Result<void> {

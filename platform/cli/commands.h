@@ -12,6 +12,6 @@ Result<void> errorCommand(const ErrorOptions& options, const std::string& comman
 Result<void> skipbenchCommand(const SkipbenchOptions& options, const std::string& command);
 Result<void> editCommand(const EditOptions& options, const std::string& command);
 Result<void> infoCommand(const InputOptions& options);
-Result<void> deviceCommand();
+Result<void> deviceCommand(const SessionOptions& options);
 
 } // namespace slabcast

@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
     SkipbenchOptions skipbench;
     EditOptions edit;
     InputOptions info;
+    SessionOptions device;
     const std::string typed = commandLine(argc, argv);
     Command commands[] = {
         {.name = "render", .help = "Draws a picture", .run = [&] { return renderCommand(render); }},
@@ -77,7 +78,7 @@ int run(int argc, char** argv) {
          .help = "Tells what the GPU can do, which texel formats were chosen and why",
          .footer = "Example: what a headset without float extensions would get\n"
                    "  SLABCAST_MASK_EXTENSIONS=mobile-strict slabcast device",
-         .run = deviceCommand},
+         .run = [&] { return deviceCommand(device); }},
     };
     bindRender(commands[0], render);
     bindSweep(commands[1], sweep);
@@ -86,6 +87,7 @@ int run(int argc, char** argv) {
     bindSkipbench(commands[4], skipbench);
     bindEdit(commands[5], edit);
     bindInfo(commands[6], info);
+    bindDevice(commands[7], device);
     const ParsedCommand parsed = parseCommandLine(commands, argc, argv);
     return parsed.command == nullptr ? parsed.status : finished(parsed.command->run());
 }

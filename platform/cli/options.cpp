@@ -211,6 +211,7 @@ void bindStability(Command& command, StabilityOptions& o) {
                .group = group},
               o.family, families)
         .word = "FAMILY";
+    bindDevice(command, o.session);
     addFlag(command,
             {.flag = "--reduced",
              .help = "fewer sizes, views and repetitions; the same bounds",

@@ -21,6 +21,7 @@ namespace slabcast {
 
 /// What render and sweep have in common: the scene, the camera and the settings of the plan.
 struct SceneOptions {
+    SessionOptions session;
     InputOptions input;
     std::string tf;
     glm::ivec2 size{1024, 1024};
@@ -49,6 +50,7 @@ struct SweepOptions : SceneOptions {
 };
 
 struct StabilityOptions {
+    SessionOptions session;
     FolderOptions folder;
     std::string family; // empty: all
     bool reduced = false;
@@ -93,6 +95,7 @@ void bindStability(Command& command, StabilityOptions& options);
 void bindError(Command& command, ErrorOptions& options);
 void bindSkipbench(Command& command, SkipbenchOptions& options);
 void bindEdit(Command& command, EditOptions& options);
+void bindDevice(Command& command, SessionOptions& options);
 void bindInfo(Command& command, InputOptions& options);
 
 } // namespace slabcast

@@ -1,0 +1,103 @@
+#include "perf/mobile/reachable_variants.h"
+
+#include <functional>
+#include <vector>
+
+#include "core/plan/frame_plan.h"
+
+namespace slabcast {
+
+namespace {
+
+using Change = std::function<void(Settings&)>;
+
+/// One choice each that differs from the default settings.
+std::vector<Change> settingsChanges() {
+    std::vector<Change> changes = {
+        [](Settings&) {},
+        [](Settings& s) { s.classification = Classification::Pre; },
+        [](Settings& s) { s.classification = Classification::Preintegrated; },
+        [](Settings& s) { s.skip = SkipStructure::None; },
+        [](Settings& s) { s.lattice = LatticeKind::Shells; },
+        [](Settings& s) { s.jitter = true; },
+        [](Settings& s) { s.totalLayers = 1; },
+        [](Settings& s) { s.planes = 1; },
+        [](Settings& s) { s.form = SegmentForm::Loop; },
+        [](Settings& s) { s.tighten = false; },
+        [](Settings& s) { s.target = TargetFormat::Rgba16f; },
+        [](Settings& s) { s.space = CompositingSpace::Linear; },
+        [](Settings& s) { s.shaded = true; },
+        [](Settings& s) { s.order = BlendOrder::FrontToBack; },
+        [](Settings& s) { s.termination.reset(); },
+    };
+    for (const int length : kUnrollLengths) {
+        changes.push_back([length](Settings& s) { s.layersPerPlane = length; });
+    }
+    return changes;
+}
+
+/// Every form of skipping, filtered or exact, as thin and as dense as decides anything.
+std::vector<SceneFacts> factsOfAllKinds() {
+    const SkipOptions structures[] = {
+        {.structure = SkipStructure::None},
+        {.structure = SkipStructure::Proximity},
+        {.structure = SkipStructure::Chebyshev},
+        {.structure = SkipStructure::BooleanOctree},
+        {.structure = SkipStructure::BitfieldOctree, .bits = 128},
+        {.structure = SkipStructure::MinMaxOctree},
+    };
+    std::vector<SceneFacts> all;
+    for (const SkipOptions& skip : structures) {
+        for (const bool exact : {false, true}) {
+            for (const double extinction : {1e-6, 10.0}) {
+                all.push_back({.sphere = {glm::dvec3(0.0), 222.0},
+                               .exactField = exact,
+                               .skip = skip,
+                               .occupiedFraction = 0.5,
+                               .maxExtinctionPerMm = extinction});
+            }
+        }
+    }
+    return all;
+}
+
+/// Whatever the scene and the device.
+void planAll(const Settings& settings, std::set<ShaderVariant>& reached) {
+    static const std::vector<SceneFacts> facts = factsOfAllKinds();
+    for (const SceneFacts& of : facts) {
+        for (const int device : {0, 1, 2, 3}) {
+            gl::Caps caps;
+            caps.isSoftware = device % 2 == 1;
+            caps.framebufferFetch = device / 2 == 1;
+            if (const Result<FramePlan> made = plan(of, settings, caps, {})) {
+                ShaderVariant variant = made->variant;
+                reached.insert(variant);
+                variant.counts = true;
+                reached.insert(variant);
+            }
+        }
+    }
+}
+
+} // namespace
+
+std::set<ShaderVariant> reachableVariants(int choices) {
+    std::set<ShaderVariant> reached;
+    const std::vector<Change> changes = settingsChanges();
+    const std::function<void(const Settings&, std::size_t, int)> choose =
+        [&](const Settings& settings, std::size_t from, int left) {
+            if (left == 0) {
+                planAll(settings, reached);
+                return;
+            }
+            for (std::size_t k = from; k < changes.size(); ++k) {
+                Settings changed = settings;
+                changes[k](changed);
+                choose(changed, k + 1, left - 1);
+            }
+        };
+    choose({}, 0, choices);
+    return reached;
+}
+
+} // namespace slabcast

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <set>
+
+#include "core/plan/shader_variant.h"
+
+namespace slabcast {
+
+/// What plan() answers, whatever facts and device, to settings that differ from the default in at
+/// most so many choices; and the same variants counting work. Pure. Cost: 100 plans for each way
+/// to choose, of which two choices have 300 and three 2300. Tested by: shader_variant_test.cpp
+std::set<ShaderVariant> reachableVariants(int choices);
+
+} // namespace slabcast

@@ -1,0 +1,54 @@
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "perf/mobile/compile_variants.h"
+#include "perf/mobile/reachable_variants.h"
+
+namespace slabcast {
+namespace {
+
+TEST(CompileVariants, LabelsTellVariantsApart) {
+    const std::set<ShaderVariant> variants = reachableVariants(2);
+    std::set<std::string> labels;
+    for (const ShaderVariant& variant : variants) {
+        labels.insert(labelOf(variant));
+    }
+    EXPECT_EQ(labels.size(), variants.size());
+    ShaderVariant variant{.unroll = 16, .lattice = LatticeKind::Shells, .jittered = true};
+    EXPECT_EQ(labelOf(variant), name(variant) + " shells per ray");
+    EXPECT_EQ(labelOf({.unroll = 4}), "post/unroll4");
+}
+
+TEST(CompileVariants, MoreChoicesReachMoreAndKeepWhatFewerReached) {
+    const std::set<ShaderVariant> one = reachableVariants(1);
+    const std::set<ShaderVariant> two = reachableVariants(2);
+    EXPECT_TRUE(std::includes(two.begin(), two.end(), one.begin(), one.end()));
+    EXPECT_GT(two.size(), one.size());
+    EXPECT_EQ(
+        two.count({.skip = SkipForm::Balls, .shaded = true, .terminates = true, .unroll = 16}), 1U);
+}
+
+TEST(CompileVariants, DescriptionsHoldEveryAxisThatVaries) {
+    const Json shown = describe({.skip = SkipForm::Boxes, .unroll = 8, .jittered = true});
+    EXPECT_EQ(shown.at("layers").whole(), 8);
+    EXPECT_EQ(shown.at("axes").at("skip").text(), "boxes");
+    EXPECT_EQ(shown.at("axes").at("jitter").text(), "per ray");
+    EXPECT_EQ(shown.at("axes").at("lattice").text(), "planar");
+    EXPECT_FALSE(shown.at("axes").contains("cover")); // of one value
+}
+
+TEST(CompileVariants, OnlyTheCallGoesFromALoop) {
+    const std::string text = "void addGroup(inout Sum sum) {\n}\nwhile (k < end) {\n"
+                             "    addGroup(sum);\n    k += 8.0;\n}\n";
+    const std::optional<std::string> empty = withoutLoopBody(text);
+    ASSERT_TRUE(empty);
+    EXPECT_EQ(empty->size(), text.size()); // lines keep their numbers
+    EXPECT_EQ(empty->find("    addGroup"), std::string::npos);
+    EXPECT_NE(empty->find("void addGroup"), std::string::npos);
+    EXPECT_NE(empty->find("k += 8.0;"), std::string::npos);
+    EXPECT_FALSE(withoutLoopBody("while (k < end) {\n}\n"));
+}
+
+} // namespace
+} // namespace slabcast
