@@ -5,6 +5,7 @@
 #include "core/plan/settings_table.h"
 #include "perf/error/scene_key.h"
 #include "perf/json.h"
+#include "perf/model/predict.h"
 #include "perf/number.h"
 #include "perf/race.h"
 #include "perf/run_store.h"
@@ -37,9 +38,26 @@ std::string twoDigits(std::size_t index) {
     return (index < 10 ? "0" : "") + std::to_string(index);
 }
 
+/// Work of a row, and what a model makes of it for other GPUs; null where it cannot be counted.
+struct RowWork {
+    Json counters, model;
+};
+RowWork workOf(Stage& stage, const FramePlan& plan, const Settings& settings) {
+    const Result<std::vector<PixelWork>> pixels = stage.workPerPixel(plan);
+    if (!pixels) {
+        return {};
+    }
+    WorkCounters counters;
+    for (const PixelWork& pixel : *pixels) {
+        counters += pixel;
+    }
+    const Result<std::vector<Prediction>> model = predictions(stage, settings, *pixels);
+    return {toJson(Result<WorkCounters>(counters)), model ? toJson(*model) : Json()};
+}
+
 /// What is said of a row before it races: its plan, its first frame's time, work and thumbnail.
-Result<Json> described(Stage& stage, const FramePlan& plan, const std::string& thumbnailFile,
-                       ReportFolder& folder) {
+Result<Json> described(Stage& stage, const FramePlan& plan, const Settings& settings,
+                       const std::string& thumbnailFile, ReportFolder& folder) {
     if (Result<void> ready = stage.prepare(plan); !ready) {
         return tl::unexpected(ready.error());
     }
@@ -53,6 +71,7 @@ Result<Json> described(Stage& stage, const FramePlan& plan, const std::string& t
         !saved) {
         return tl::unexpected(saved.error());
     }
+    RowWork work = workOf(stage, plan, settings);
     return Json{{"label", std::to_string(plan.planes) + "x" + std::to_string(plan.layersPerPlane)},
                 {"classify", name(plan.variant.classification)},
                 {"termination",
@@ -64,7 +83,8 @@ Result<Json> described(Stage& stage, const FramePlan& plan, const std::string& t
                 {"form", plan.variant.unroll > 0 ? "unrolled" : "loop"},
                 {"skip", name(plan.skip)},
                 {"tighten", plan.tighten},
-                {"counters", toJson(stage.countWork(plan))},
+                {"counters", std::move(work.counters)},
+                {"model", std::move(work.model)},
                 {"compile_ms", stage.renderer().compileMs(plan.variant)},
                 {"first_frame_ms", *firstMs},
                 {"variant", name(plan.variant)},
@@ -142,7 +162,7 @@ private:
             if (!plan) {
                 return tl::unexpected(plan.error());
             }
-            const Result<Json> one = rowOf(*plan, all.size(), rows.size());
+            const Result<Json> one = rowOf(*plan, row.settings, all.size(), rows.size());
             if (!one) {
                 return one;
             }
@@ -154,7 +174,8 @@ private:
     }
 
     /// From the store, or as it is.
-    Result<Json> rowOf(const FramePlan& plan, std::size_t index, std::size_t count) {
+    Result<Json> rowOf(const FramePlan& plan, const Settings& settings, std::size_t index,
+                       std::size_t count) {
         const std::string id = "row " + twoDigits(index);
         const std::string picture = std::string(kSweepThumbnails) + "/" + twoDigits(index) + ".png";
         if (const Json* kept = store_.find(id);
@@ -164,10 +185,11 @@ private:
         progress_.show("row " + std::to_string(index + 1) + " of " + std::to_string(count) + ": " +
                        std::to_string(plan.layersPerPlane) + " layers per plane, skip " +
                        name(plan.skip) + ", " + (plan.tighten ? "tight planes" : "10-gons"));
-        return described(stage_, plan, picture, folder_).and_then([&](Json row) -> Result<Json> {
-            Json piece = {{"id", id}, {"row", std::move(row)}};
-            return store_.add(piece).map([&] { return std::move(piece); });
-        });
+        return described(stage_, plan, settings, picture, folder_)
+            .and_then([&](Json row) -> Result<Json> {
+                Json piece = {{"id", id}, {"row", std::move(row)}};
+                return store_.add(piece).map([&] { return std::move(piece); });
+            });
     }
 
     Result<Json> timed(Json rows) {

@@ -86,6 +86,11 @@ struct EditOptions : SceneOptions {
     bool verify = false;
 };
 
+struct ModelOptions : SceneOptions {
+    FolderOptions folder;
+    std::vector<int> layersPerPlane;
+};
+
 struct Command;
 
 // Each binds the options of one command, with its help. `options` must outlive the parsing.
@@ -94,6 +99,7 @@ void bindSweep(Command& command, SweepOptions& options);
 void bindStability(Command& command, StabilityOptions& options);
 void bindError(Command& command, ErrorOptions& options);
 void bindSkipbench(Command& command, SkipbenchOptions& options);
+void bindModel(Command& command, ModelOptions& options);
 void bindEdit(Command& command, EditOptions& options);
 void bindDevice(Command& command, SessionOptions& options);
 void bindInfo(Command& command, InputOptions& options);
