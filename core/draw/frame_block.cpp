@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numbers>
 
 #include "core/scene/scene.h"
 #include "core/transfer/table_axis.h"
@@ -31,11 +32,19 @@ glm::uvec4 shaderTest(const NodeTest& test, int bitsPerNode) {
     return bitsPerNode == 64 ? glm::uvec4(w.x & 0xffffU, w.x >> 16, w.y & 0xffffU, w.y >> 16) : w;
 }
 
-void fillSkip(FrameBlock& block, const BuiltSkip& skip, glm::ivec3 dims) {
+/// Exact lower bounds become float32 comparisons: a guard well above their rounding, far below a
+/// voxel. So does a place at the volume's far face, which is none of a block beyond.
+constexpr double kBelow = 1.0 - 1e-5;
+constexpr double kInside = 1.0 - 1e-6;
+
+void fillSkip(FrameBlock& block, const BuiltSkip& skip, glm::ivec3 dims, double spacingMm) {
     const int edge = skip.options.blockEdgeVoxels;
     const glm::ivec3 blocks = blocksOf(dims, edge);
     block.skipMap =
-        packed(glm::dvec3(dims) / double(edge), skip.lengths ? skip.lengths->quantumMm : 0.0);
+        packed(glm::dvec3(dims) / double(edge) * kInside,
+               skip.lengths && skip.lengths->quantumMm > 0.0
+                   ? spacingMm / (skip.lengths->quantumMm * kBelow)
+                   : 0.0);
     const bool topDown = skip.options.traversal == Traversal::TopDown;
     block.skipBlocks = glm::ivec4(blocks - 1, topDown ? kToInitialLevel : 1);
     if (skip.octree) {
@@ -65,36 +74,61 @@ void fillShading(FrameBlock& block, const ShadingParameters& shading,
         glm::dvec4(shading.ambient, shading.diffuse, shading.specular, shading.shininess));
 }
 
+/// distance^2 - (depth * length)^2 over the spacing, where the length is of a ray per unit of depth:
+/// |centre|^2 - |tangent(p) depth|^2 across the view's axis, as (centre - place) . (centre + place).
+void fillShells(FrameBlock& block, const RayFrame& f) {
+    const double depth = f.sphereCentre.z;
+    const glm::dvec2 centre(f.sphereCentre);
+    const glm::dvec2 place0 = f.tangent0 * depth;
+    const glm::dvec2 perPixel = f.tangentPerPixel * depth;
+    const double at0 = glm::dot(centre - place0, centre + place0);
+    block.sphere = glm::vec4(glm::dvec4(at0 / f.spacing, 0.0, depth, f.sphereDistance));
+    block.missed = glm::vec4(
+        glm::dvec4(-2.0 * place0 * perPixel, -perPixel * perPixel) / f.spacing);
+}
+
+/// What makes a texel's alpha a number of halvings (or of reference lengths), for one spacing.
+double lengthScale(const RayFrame& f, const Scene& scene) {
+    const double spacingMm = f.spacing * f.mmPerViewUnit;
+    const ClassifiedTexels* classified = scene.classified();
+    return classified != nullptr ? spacingMm / classified->referenceLengthMm
+                                 : spacingMm * scene.table().extinctionPerMm * std::numbers::log2e;
+}
+
+/// `width`: texels of the table's texture.
+glm::vec4 tableMap(const Scene& scene, TableRead read, int width) {
+    const TableAxis axis = tableAxis(scene.texels(), scene.table());
+    if (read == TableRead::Exact) {
+        return packed({axis.texelsPerSampled, axis.firstSampled, 0.0}, axis.lastTexel);
+    }
+    // A texel's middle lies half a texel from its edge.
+    const double atZero = 0.5 - axis.firstSampled * axis.texelsPerSampled;
+    return packed(glm::dvec3(axis.texelsPerSampled, atZero, 0.0) / double(width), axis.lastTexel);
+}
+
 } // namespace
 
 FrameBlock makeFrameBlock(const RayFrame& f, const Scene& scene, const FramePlan& plan) {
     FrameBlock block{};
     block.centre0 = packed(f.centre0, f.lattice.total / 2.0);
     block.centreX = packed(f.centreX, (f.nearDepth - f.sphereCentre.z) / f.spacing);
-    block.centreY = packed(f.centreY, f.nearDepth);
-    block.direction0 = packed(f.direction0, f.spacing);
-    block.directionX = packed(f.directionX, 1.0 / f.spacing);
-    block.directionY = packed(f.directionY, f.mmPerViewUnit);
+    block.centreY = packed(f.centreY, f.nearDepth / f.spacing);
+    block.step0 = packed(f.direction0 * f.spacing, lengthScale(f, scene));
+    block.stepX = packed(f.directionX * f.spacing, f.sphereDistance / f.spacing);
+    block.stepY = packed(f.directionY * f.spacing, 1.0 / f.spacing);
     block.tangent = glm::vec4(glm::dvec4(f.tangent0, f.tangentPerPixel));
-    block.sphere = packed(f.sphereCentre, f.sphereDistance);
-    block.miss = glm::vec4(glm::dvec4(f.tangent0 * f.sphereCentre.z - glm::dvec2(f.sphereCentre),
-                                      f.tangentPerPixel * f.sphereCentre.z));
+    fillShells(block, f);
     block.viewport = glm::vec4(
-        glm::dvec4(f.viewportCentre, 0.0,
+        glm::dvec4(f.viewportCentre, plan.layersPerPlane,
                    plan.variant.fetchesTarget ? saturatedAlpha(plan) : plan.terminationAlpha));
-    const TableAxis axis = tableAxis(scene.texels(), scene.table());
-    const ClassifiedTexels* classified = scene.classified();
-    block.tableMap = packed({axis.texelsPerSampled, axis.firstSampled,
-                             classified != nullptr ? 1.0 / classified->referenceLengthMm
-                                                   : scene.table().extinctionPerMm},
-                            axis.lastTexel);
+    block.tableMap = tableMap(scene, plan.variant.table, scene.table().texels.size());
     if (const PreintegratedTable* table = scene.preintegrated()) {
         const int last = table->size() - 1;
         block.tableEnds = {table->at(0, 0), table->at(last, last)};
     }
     block.decode = decodeWeights(scene.texels().format);
     if (scene.skip().exists()) {
-        fillSkip(block, scene.skip(), scene.geometry().dims);
+        fillSkip(block, scene.skip(), scene.geometry().dims, f.spacing * f.mmPerViewUnit);
     }
     if (plan.variant.shaded) {
         fillShading(block, scene.look().shading, scene.geometry(), scene.texels().valueScale);

@@ -9,28 +9,31 @@
     FIELD(vec4, centre0, 1)                                                                        \
     /* per pixel to the right; w: offset of the near plane (planar lattice) */                     \
     FIELD(vec4, centreX, 1)                                                                        \
-    /* per pixel up; w: near depth (shells) */                                                     \
+    /* per pixel up; w: near depth in spacings of the layers (shells) */                           \
     FIELD(vec4, centreY, 1)                                                                        \
-    /* xyz: uvw per unit of depth; w: spacing of the layers, view units */                         \
-    FIELD(vec4, direction0, 1)                                                                     \
-    /* per pixel to the right; w: 1 / spacing */                                                   \
-    FIELD(vec4, directionX, 1)                                                                     \
-    /* per pixel up; w: mm per view unit */                                                        \
-    FIELD(vec4, directionY, 1)                                                                     \
-    /* xy: of the central ray; zw: per pixel */                                                    \
+    /* xyz: uvw per layer of the central ray, or for shells per spacing of depth; w: halvings of   \
+       light in a layer as long as the spacing, per unit of extinction in the table; or such       \
+       layers per reference length of pre-classified texels */                                     \
+    FIELD(vec4, step0, 1)                                                                          \
+    /* per pixel to the right; w: distance of the sphere's centre in spacings (shells) */          \
+    FIELD(vec4, stepX, 1)                                                                          \
+    /* per pixel up; w: 1 / spacing, view units (shells) */                                        \
+    FIELD(vec4, stepY, 1)                                                                          \
+    /* xy: (x, y) / depth of the central ray; zw: per pixel */                                     \
     FIELD(vec4, tangent, 1)                                                                        \
-    /* xyz: the sphere's centre (x, y, depth); w: its distance */                                  \
+    /* x: see missed; z: depth of the sphere's centre; w: its distance */                          \
     FIELD(vec4, sphere, 1)                                                                         \
-    /* at the sphere's depth, xy: from its centre to the central ray; zw: per pixel */             \
-    FIELD(vec4, miss, 1)                                                                           \
-    /* xy: centre in pixels; w: termination */                                                     \
+    /* sphere.x + (xy + zw * p) . p of a pixel p: square of the distance of the sphere's centre    \
+       less that of the ray's place at its depth, over the spacing */                              \
+    FIELD(vec4, missed, 1)                                                                         \
+    /* xy: centre in pixels; z: layers per plane; w: termination */                                \
     FIELD(vec4, viewport, 1)                                                                       \
-    /* xy: table texel = (sampled - y) * x; w: last texel; z: per mm, extinction where a table     \
-       texel's alpha is 1, or 1 / reference length of pre-classified texels */                     \
+    /* place in the table: of one that is fetched (sampled - y) * x, in texels; of one that is     \
+       filtered sampled * x + y, from 0 to 1; w: last texel */                                     \
     FIELD(vec4, tableMap, 1)                                                                       \
     /* of a pre-integrated table: its first and last texel */                                      \
     FIELD(vec4, tableEnds, 2)                                                                      \
-    /* xyz: blocks or leaves per unit of uvw; w: free length per count, mm */                      \
+    /* xyz: blocks or leaves per unit of uvw; w: counts of free length per spacing */              \
     FIELD(vec4, skipMap, 1)                                                                        \
     /* xy: sampled value of an exact texel = dot(texel.rg, xy) */                                  \
     FIELD(vec4, decode, 1)                                                                         \

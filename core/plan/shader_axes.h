@@ -21,6 +21,8 @@ enum class Axis : std::uint8_t {
     Shading,
     Field,
     Material,
+    Table,
+    Lengths,
     Interval,
     Accumulate,
     Termination,
@@ -47,6 +49,7 @@ struct AxisValue {
     const char* extension = nullptr;    // of programs that draw
     ShortList<Sampler, 1> samplersCounting{}; // of programs that count
     int layersWrittenOut = 0;
+    int layersPerGroup = 0; // in a row, without a branch between them
 };
 
 /// One axis, and which field of a variant holds its value.
@@ -71,17 +74,19 @@ namespace axes {
 inline constexpr AxisValue kClassification[] = {
     {.name = "post",
      .suffix = "post",
-     .files = {{"CLASSIFICATION_FILE", "segment/classification/post.glsl"}},
+     .files = {{"CLASSIFICATION_FILE", "segment/classification/post.glsl"},
+               {"OF_LENGTH_FILE", "segment/lengths/of_material.glsl"}},
      .samplers = {Sampler::Volume, Sampler::Table},
      .fields = {"tableMap"}},
     {.name = "preclassified",
      .suffix = "preclassified",
-     .files = {{"CLASSIFICATION_FILE", "segment/classification/preclassified.glsl"}},
-     .samplers = {Sampler::Volume},
-     .fields = {"tableMap"}},
+     .files = {{"CLASSIFICATION_FILE", "segment/classification/preclassified.glsl"},
+               {"OF_LENGTH_FILE", "segment/lengths/of_opacity.glsl"}},
+     .samplers = {Sampler::Volume}},
     {.name = "preintegrated",
      .suffix = "preintegrated",
-     .files = {{"CLASSIFICATION_FILE", "segment/classification/preintegrated.glsl"}},
+     .files = {{"CLASSIFICATION_FILE", "segment/classification/preintegrated.glsl"},
+               {"OF_LENGTH_FILE", "segment/lengths/of_mean.glsl"}},
      .samplers = {Sampler::Volume, Sampler::Table},
      .fields = {"tableMap", "tableEnds"}},
 };
@@ -140,8 +145,25 @@ inline constexpr AxisValue kMaterial[] = {
                {"MATERIAL_OF_INTERVAL_FILE", "segment/material/transfer_interval.glsl"}}},
 };
 
+inline constexpr AxisValue kTable[] = {
+    {.name = "exact", .files = {{"TABLE_FILE", "segment/table/exact.glsl"}}},
+    {.name = "filtered",
+     .suffix = "+filtered",
+     .files = {{"TABLE_FILE", "segment/table/filtered.glsl"}}},
+};
+
+inline constexpr AxisValue kLengths[] = {
+    {.name = "per ray", .files = {{"LENGTHS_FILE", "segment/lengths/per_ray.glsl"}}},
+    {.name = "baked",
+     .suffix = "+baked",
+     .files = {{"LENGTHS_FILE", "BAKED_FILE"}}},
+};
+
 inline constexpr AxisValue kInterval[] = {
     {.name = "box", .files = {{"INTERVAL_FILE", "segment/interval/box.glsl"}}},
+    {.name = "none",
+     .suffix = "+boundless",
+     .files = {{"INTERVAL_FILE", "segment/interval/none.glsl"}}},
 };
 
 inline constexpr AxisValue kAccumulate[] = {
@@ -179,7 +201,7 @@ inline constexpr AxisValue kLattice[] = {
     {.name = "planar", .files = {{"LATTICE_FILE", "segment/lattice/planar.glsl"}}},
     {.name = "shells",
      .files = {{"LATTICE_FILE", "segment/lattice/shells.glsl"}},
-     .fields = {"sphere", "miss"}},
+     .fields = {"sphere", "missed"}},
 };
 
 inline constexpr AxisValue kJitter[] = {
@@ -194,22 +216,27 @@ inline constexpr AxisValue kCover[] = {
 };
 
 inline constexpr AxisValue kForm[] = {
-    {.name = "loop", .suffix = "/loop", .files = {{"FORM_FILE", "segment/form/loop.glsl"}}},
-#define SLABCAST_UNROLLED(n)                                                                       \
+    {.name = "loop",
+     .suffix = "/loop",
+     .files = {{"FORM_FILE", "segment/form/loop.glsl"},
+               {"BAKED_FILE", "segment/lengths/baked.glsl"}},
+     .layersPerGroup = 8},
+#define SLABCAST_UNROLLED(n, group, ends)                                                             \
     {                                                                                              \
         .name = #n " layers", .suffix = "/unroll" #n,                                              \
-        .files = {{"FORM_FILE", "segment/form/unrolled.glsl"}}, .layersWrittenOut = n              \
+        .files = {{"FORM_FILE", "segment/form/unrolled.glsl"}, {"BAKED_FILE", ends}},              \
+        .layersWrittenOut = n, .layersPerGroup = group                                             \
     }
-    SLABCAST_UNROLLED(1),
-    SLABCAST_UNROLLED(2),
-    SLABCAST_UNROLLED(4),
-    SLABCAST_UNROLLED(8),
-    SLABCAST_UNROLLED(12),
-    SLABCAST_UNROLLED(16),
-    SLABCAST_UNROLLED(24),
-    SLABCAST_UNROLLED(32),
-    SLABCAST_UNROLLED(48),
-    SLABCAST_UNROLLED(64),
+    SLABCAST_UNROLLED(1, 1, "segment/lengths/baked_each.glsl"),
+    SLABCAST_UNROLLED(2, 2, "segment/lengths/baked_each.glsl"),
+    SLABCAST_UNROLLED(4, 4, "segment/lengths/baked.glsl"),
+    SLABCAST_UNROLLED(8, 8, "segment/lengths/baked.glsl"),
+    SLABCAST_UNROLLED(12, 4, "segment/lengths/baked.glsl"),
+    SLABCAST_UNROLLED(16, 8, "segment/lengths/baked.glsl"),
+    SLABCAST_UNROLLED(24, 8, "segment/lengths/baked.glsl"),
+    SLABCAST_UNROLLED(32, 8, "segment/lengths/baked.glsl"),
+    SLABCAST_UNROLLED(48, 8, "segment/lengths/baked.glsl"),
+    SLABCAST_UNROLLED(64, 8, "segment/lengths/baked.glsl"),
 #undef SLABCAST_UNROLLED
 };
 
@@ -247,6 +274,8 @@ inline constexpr AxisInfo kAxes[] = {
     axes::axis<&ShaderVariant::shaded>("shading", axes::kShading),
     axes::axis<&ShaderVariant::exactField>("field", axes::kField),
     axes::axis<&ShaderVariant::material>("material", axes::kMaterial),
+    axes::axis<&ShaderVariant::table>("table", axes::kTable),
+    axes::axis<&ShaderVariant::lengths>("lengths", axes::kLengths),
     axes::axis<&ShaderVariant::interval>("interval", axes::kInterval),
     axes::axis<&ShaderVariant::accumulate>("accumulate", axes::kAccumulate),
     axes::axis<&ShaderVariant::terminates>("termination", axes::kTermination),
@@ -264,6 +293,13 @@ inline constexpr Requirement kRequirements[] = {
     {Axis::Shading, 1, Axis::Classification, {0}},
     // Pre-classified texels are colours, not a field.
     {Axis::Field, 1, Axis::Classification, {0, 2}},
+    // A table of single values is post-classification's; texels that are interpolated in float32
+    // go with one that is, too.
+    {Axis::Table, 1, Axis::Classification, {0}},
+    {Axis::Table, 1, Axis::Field, {0}},
+    // Means of intervals are extinctions, and layers of one length are those of shells.
+    {Axis::Lengths, 1, Axis::Classification, {0, 1}},
+    {Axis::Lengths, 1, Axis::Lattice, {1}},
     // What is before a segment is looked at to leave it.
     {Axis::Target, 1, Axis::Termination, {1}},
 };

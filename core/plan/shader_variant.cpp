@@ -49,10 +49,11 @@ std::string frameFields() {
     return text;
 }
 
-std::string layersWrittenOut(int count) {
+/// X(0) X(1) ..., each number with `suffix`, up to and without `end`.
+std::string writtenOut(int end, int step, const char* suffix) {
     std::string text;
-    for (int k = 0; k < count; ++k) {
-        text += "X(" + std::to_string(k) + ") ";
+    for (int k = 0; k < end; k += step) {
+        text.append("X(").append(std::to_string(k)).append(suffix).append(") ");
     }
     return text;
 }
@@ -119,8 +120,10 @@ Result<ShaderPair> shaderText(const ShaderVariant& variant, const MeasuringText&
         for (const SlotFile& slot : value.files) {
             defines[slot.slot] = slot.file;
         }
-        if (value.layersWrittenOut > 0) {
-            defines["REPEAT_LAYERS(X)"] = layersWrittenOut(value.layersWrittenOut);
+        if (const int group = value.layersPerGroup; group > 0) {
+            defines["GROUP"] = std::to_string(group);
+            defines["GROUP_LAYERS(X)"] = writtenOut(group, 1, "");
+            defines["REPEAT_GROUPS(X)"] = writtenOut(value.layersWrittenOut, group, ".0");
         }
     }
     Result<std::string> vertex = expandShader(defines.at("COVER_FILE"), defines);

@@ -14,8 +14,14 @@ namespace slabcast {
 enum class Classification : std::uint8_t { Post, Pre, Preintegrated };
 /// What gives a value its colour and extinction.
 enum class Material : std::uint8_t { Transfer };
-/// What a ray's stay is cut to.
-enum class Interval : std::uint8_t { Box };
+/// How a transfer function's table is read between two texels: both, in float32, or the device's
+/// filter.
+enum class TableRead : std::uint8_t { Exact, Filtered };
+/// Where a layer's opacity is made from its length: along every ray, or once, where layers are all
+/// of one length, in the table or the pre-classified texels.
+enum class Lengths : std::uint8_t { PerRay, Baked };
+/// What a ray's stay is cut to. None: what is visible keeps clear of all that would cut it.
+enum class Interval : std::uint8_t { Box, None };
 /// What is made of a ray's layers.
 enum class Accumulate : std::uint8_t { Composite };
 /// What puts a plane's polygon where it lies: 10-gons around the sphere, or rectangles.
@@ -45,6 +51,8 @@ struct ShaderVariant {
     LatticeKind lattice = LatticeKind::Planar;
     bool jittered = false;
     Material material = Material::Transfer;
+    TableRead table = TableRead::Exact;
+    Lengths lengths = Lengths::PerRay;
     Interval interval = Interval::Box;
     Accumulate accumulate = Accumulate::Composite;
     Cover cover = Cover::Planes;

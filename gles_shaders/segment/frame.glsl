@@ -8,6 +8,4 @@ precision highp usampler3D;
 layout(std140) uniform FrameBlock {
     FRAME_FIELDS
 };
-#define firstPlane counts.x
-#define layersPerPlane counts.y
 #define octreeRise skipBlocks.w

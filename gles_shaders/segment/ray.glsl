@@ -3,58 +3,36 @@
 struct Ray {
     vec3 centre;
     vec3 step;
-    vec3 inverseStep; // kFar along axes that the ray does not move along
-    float layerLengthMm;
-    float entry; // offsets of its stay: inside the interval and beyond the near plane
-    float exit;
+    float layerLength; // in spacings of the lattice
+    float nearOffset;  // of the near plane
 };
 
-const float kFar = 1.0e30;
+/// What is affine in the pixel: its coefficients are the host's.
+vec3 affine(vec3 at0, vec3 perX, vec3 perY, vec2 p) {
+    precise vec3 sum = fma(perX, vec3(p.x), fma(perY, vec3(p.y), at0));
+    return sum;
+}
 
-/// What a lattice is laid along.
-struct EyeRay {
-    vec2 pixel; // from the viewport's centre
-    vec2 slope; // (x, y) / depth
-    float lengthPerDepth;
-    vec3 centre;    // uvw at the depth of the sphere's centre
-    vec3 direction; // uvw per unit of depth
-};
+/// Square of a ray's length per unit of depth.
+float squaredLengthPerDepth(vec2 p) {
+    precise vec2 slope = fma(tangent.zw, p, tangent.xy);
+    precise float square = fma(slope.x, slope.x, fma(slope.y, slope.y, 1.0));
+    return square;
+}
 
+#include INTERVAL_FILE
 #include LATTICE_FILE
 #include JITTER_FILE
-#include INTERVAL_FILE
 
 Ray rayOfFragment(vec2 fragCoord) {
-    precise vec2 p = fragCoord - viewport.xy;
-    precise vec2 t = tangent.xy + tangent.zw * p;
-    precise float lengthPerDepth = sqrt(1.0 + dot(t, t));
-    precise vec3 direction = direction0.xyz + directionX.xyz * p.x + directionY.xyz * p.y;
-    precise vec3 centre = centre0.xyz + centreX.xyz * p.x + centreY.xyz * p.y;
-
-    Ray ray = rayOnLattice(EyeRay(p, t, lengthPerDepth, centre, direction));
+    Ray ray = rayOnLattice(fragCoord - viewport.xy);
     jitterRay(fragCoord, ray);
-    ray.inverseStep = mix(1.0 / ray.step, vec3(kFar), lessThan(abs(ray.step), vec3(1.0e-25)));
-    cutStay(ray);
     return ray;
 }
 
-/// The layers of this plane that meet the ray's stay: half-open.
-ivec2 layersOfPlane(Ray ray, int plane) {
-    int first = plane * layersPerPlane;
-    if (ray.entry >= ray.exit) {
-        return ivec2(first);
-    }
-    float low = float(first);
-    float high = float(first + layersPerPlane);
-    float begin = clamp(floor(ray.entry + centre0.w), low, high);
-    float end = clamp(ceil(ray.exit + centre0.w), low, min(high, 2.0 * centre0.w));
-    return ivec2(int(begin), int(end));
-}
-
-/// Length of layer i within the stay, mm.
-float lengthInside(Ray ray, int i) {
-    float low = float(i) - centre0.w;
-    precise float inside =
-        clamp(min(ray.exit, low + 1.0) - max(ray.entry, low), 0.0, 1.0) * ray.layerLengthMm;
-    return inside;
+/// Where a segment's layer k begins, half a layer more its middle: exact, and so the same place
+/// however the layers are dealt out to planes.
+vec3 placeOf(Ray ray, Segment segment, float k) {
+    precise vec3 place = fma(ray.step, vec3(segment.front + k), ray.centre);
+    return place;
 }

@@ -2,21 +2,34 @@
 // blended over or under each other.
 #include TERMINATION_FILE
 
-vec4 started() {
-    return vec4(0.0);
+struct Sum {
+    vec4 colour;
+    float passing; // share of light from behind: the same as 1 - opacity, but for rounding, so that
+                   // no layer waits for a difference
+};
+
+Sum started() {
+    return Sum(vec4(0.0), 1.0);
 }
 
-/// Precise, as is all that decides a pixel: variants are different programs, and a compiler that
-/// fused one and not the other would make skipping change the last bit.
-vec4 added(vec4 sum, vec4 layer) {
-    precise vec4 result = inSum(sum + inSum(inSum(1.0 - sum.a) * layer));
-    return result;
+/// A layer, or where `share` is 0 nothing of it. Precise, as is all that decides a pixel: variants
+/// are different programs, and a compiler that fused one and not the other would make skipping
+/// change the last bit.
+void addShare(inout Sum sum, vec4 layer, float share) {
+    precise float passing = sum.passing * share;
+    precise vec4 colour = inSum(fma(layer, vec4(passing), sum.colour));
+    precise float left = inSum(fma(-layer.a, passing, sum.passing));
+    sum = Sum(colour, left);
 }
 
-bool done(vec4 sum) {
-    return terminated(sum.a);
+void add(inout Sum sum, vec4 layer) {
+    addShare(sum, layer, 1.0);
 }
 
-vec4 resultOf(vec4 sum, bool layersLeft) {
-    return closed(sum, layersLeft);
+bool done(Sum sum) {
+    return terminated(sum.colour.a);
+}
+
+vec4 resultOf(Sum sum) {
+    return closed(sum.colour);
 }

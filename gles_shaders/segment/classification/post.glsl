@@ -4,15 +4,11 @@
 #include "segment/classification/one_material.glsl"
 #include SHADING_FILE
 #include MATERIAL_OF_VALUE_FILE
+float fullLight(vec4 material);
 
-/// Premultiplied colour and opacity of layer i, whose sample lies at uvw.
-vec4 classify(vec3 uvw, Ray ray, int i) {
-    float value = sampleField(uvw);
+vec4 layerAt(Ray ray, Segment segment, float k, inout float front) {
+    vec3 uvw = middleOf(ray, segment, k);
     countFetches(kFetchesPerSample);
-    vec4 found = materialOf(value, kLabel, kSide);
-    float alpha = opacityOfDepth(found.a * (lengthInside(ray, i) * tableMap.z));
-    if (alpha == 0.0) {
-        return vec4(0.0);
-    }
-    return vec4(inColour(shade(found.rgb, uvw, ray) * alpha), alpha);
+    vec4 found = materialOf(sampleField(uvw), kLabel, kSide);
+    return vec4(shade(found.rgb, fullLight(found), uvw, ray), found.a);
 }

@@ -1,9 +1,9 @@
 // Draws: the segment's premultiplied colour.
-void countLayer() {}
+void countLayers(int n) {}
 void countFetches(int n) {}
 void countSkipFetch() {}
-void countStretch(bool isFree) {}
+void countLook(bool isFree) {}
 
-void writeResult(vec4 sum, ivec2 range) {
+void writeResult(vec4 sum, Segment segment) {
     colour = sum;
 }

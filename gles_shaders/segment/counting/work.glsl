@@ -2,18 +2,18 @@
 int countedLayers = 0;
 int countedFetches = 0;
 int countedSkipFetches = 0;
-int countedStretches = 0;
+int countedLooks = 0;
 int countedOccupied = 0;
 
-void countLayer() { ++countedLayers; }
+void countLayers(int n) { countedLayers += n; }
 void countFetches(int n) { countedFetches += n; }
 void countSkipFetch() { ++countedSkipFetches; }
-void countStretch(bool isFree) {
-    ++countedStretches;
+void countLook(bool isFree) {
+    ++countedLooks;
     countedOccupied += isFree ? 0 : 1;
 }
 
-void writeResult(vec4 sum, ivec2 range) {
-    work0 = vec4(1, range.y - range.x, countedLayers, countedSkipFetches);
-    work1 = vec4(countedFetches, countedStretches, countedOccupied, sum.a);
+void writeResult(vec4 sum, Segment segment) {
+    work0 = vec4(1, layersOf(segment), countedLayers, countedSkipFetches);
+    work1 = vec4(countedFetches, countedLooks, countedOccupied, sum.a);
 }

@@ -1,27 +1,29 @@
-// A segment as a loop, for desktop-class GPUs and lengths beyond the unroll list. Leaping and
-// sampling are loops of their own, so that neighbouring fragments leap together and then sample
-// together.
-vec4 march(Ray ray, ivec2 range) {
-    vec4 sum = started();
-    int i = range.x;
-    while (i < range.y) {
-        Stretch stretch = stretchAt(samplePosition(ray, i), ray);
-        while (stretch.free && i + stretch.layers < range.y) {
-            i += stretch.layers;
-            stretch = stretchAt(samplePosition(ray, i), ray);
+// A segment as a loop over groups, for lengths beyond the unroll list. Leaping and compositing are
+// loops of their own, so that neighbouring fragments leap together and then composite together.
+#include "segment/form/group.glsl"
+
+/// Groups from k on that are known to be free where samples up to `through` are.
+float freeGroups(float k, float through) {
+    return max(floor((through - lastOf(k)) * (1.0 / float(GROUP))) + 1.0, 0.0);
+}
+
+vec4 march(Ray ray, Segment segment) {
+    Sum sum = started();
+    Segment inGroups = composited(segment);
+    addEntry(sum, ray, segment);
+    float k = firstGroup(inGroups);
+    float end = endOfLayers(inGroups);
+    while (k < end && !done(sum)) {
+        float leapt = kLooks ? 1.0 : 0.0;
+        while (leapt > 0.0 && k < end) {
+            leapt = freeGroups(k, freeThrough(ray, inGroups, k, lastOf(k)));
+            k += float(GROUP) * leapt;
         }
-        if (stretch.free) {
-            break;
-        }
-        int stop = min(i + stretch.layers, range.y);
-        beginRun(ray, i);
-        for (; i < stop && !done(sum); ++i) {
-            countLayer();
-            sum = added(sum, classify(samplePosition(ray, i), ray, i));
-        }
-        if (done(sum)) {
-            break;
+        if (k < end) {
+            addGroup(sum, ray, inGroups, k);
+            k += float(GROUP);
         }
     }
-    return resultOf(sum, i < range.y);
+    addExit(sum, ray, segment);
+    return resultOf(sum);
 }

@@ -1,36 +1,20 @@
-// A segment without a loop: the host writes REPEAT_LAYERS(X) as X(0) X(1) ... for the variant's
+// A segment without a loop: the host writes REPEAT_GROUPS(X) as X(0.0) X(8.0) ... for the variant's
 // length.
-struct Walk {
-    int decided; // layers before this one are known to be free or not
-    bool free;
-    bool left; // early
-    vec4 sum;
-};
+#include "segment/form/group.glsl"
 
-void compositeLayer(Ray ray, int i, int end, inout Walk walk) {
-    if (i >= end) {
-        return;
-    }
-    if (done(walk.sum)) {
-        walk.left = true;
-        return;
-    }
-    vec3 uvw = samplePosition(ray, i);
-    if (i >= walk.decided) {
-        Stretch stretch = stretchAt(uvw, ray);
-        walk.decided = i + stretch.layers;
-        walk.free = stretch.free && stretch.layers > 0;
-    }
-    if (!walk.free) {
-        countLayer();
-        beginRun(ray, i);
-        walk.sum = added(walk.sum, classify(uvw, ray, i));
+void compositeGroup(inout Sum sum, Ray ray, Segment segment, float k0) {
+    if (reaches(segment, k0, float(GROUP)) && !done(sum) &&
+        !(kLooks && isFree(ray, segment, k0, lastOf(k0)))) {
+        addGroup(sum, ray, segment, k0);
     }
 }
 
-vec4 march(Ray ray, ivec2 range) {
-    Walk walk = Walk(range.x, false, false, started());
-#define COMPOSITE_LAYER(k) compositeLayer(ray, range.x + k, range.y, walk);
-    REPEAT_LAYERS(COMPOSITE_LAYER)
-    return resultOf(walk.sum, walk.left);
+#define COMPOSITE_GROUP(k0) compositeGroup(sum, ray, inGroups, k0);
+vec4 march(Ray ray, Segment segment) {
+    Sum sum = started();
+    Segment inGroups = composited(segment);
+    addEntry(sum, ray, segment);
+    REPEAT_GROUPS(COMPOSITE_GROUP)
+    addExit(sum, ray, segment);
+    return resultOf(sum);
 }

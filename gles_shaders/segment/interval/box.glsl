@@ -1,19 +1,67 @@
-// A ray's stay in the volume's box.
+// A ray's stay: in the volume's box, and beyond the near plane.
+const bool kEyeIsOutside = false;
 
-/// Offsets at which one coordinate lies in [0, 1].
-vec2 slabOffsets(float centre, float inverseSlope) {
-    if (inverseSlope == kFar) {
-        return centre >= 0.0 && centre <= 1.0 ? vec2(-kFar, kFar) : vec2(kFar, -kFar);
-    }
-    precise float a = (0.0 - centre) * inverseSlope;
-    precise float b = (1.0 - centre) * inverseSlope;
-    return vec2(min(a, b), max(a, b));
+struct Segment {
+    float front; // offset of its first layer's front
+    float entry; // of the stay, in layers from there; below 0: before it
+    float exit;  // at most the plane's layers; below 0 where the ray misses the plane's slab
+};
+
+/// A ray along an axis divides by next to nothing, and one in a face lies inside: the box is wider
+/// by the rounding of a coordinate.
+Segment segmentOf(Ray ray, float front) {
+    const float kHalf = 0.5 * (1.0 + 1.1920929e-7);
+    precise vec3 inverse = 1.0 / (ray.step + 1.0e-30);
+    precise vec3 middle = (0.5 - ray.centre) * inverse;
+    precise vec3 near = fma(abs(inverse), vec3(-kHalf), middle);
+    precise vec3 far = fma(abs(inverse), vec3(kHalf), middle);
+    precise float entry = max(max(near.x, near.y), max(near.z, ray.nearOffset)) - front;
+    precise float exit = min(min(far.x, far.y), far.z) - front;
+    return Segment(front, entry, entry < exit ? min(exit, viewport.z) : -1.0);
 }
 
-void cutStay(inout Ray ray) {
-    vec2 x = slabOffsets(ray.centre.x, ray.inverseStep.x);
-    vec2 y = slabOffsets(ray.centre.y, ray.inverseStep.y);
-    vec2 z = slabOffsets(ray.centre.z, ray.inverseStep.z);
-    ray.entry = max(max(x.x, y.x), max(z.x, ray.entry));
-    ray.exit = min(min(x.y, y.y), z.y);
+/// Whether any of n layers from k on is inside.
+bool reaches(Segment segment, float k, float n) {
+    return k < segment.exit && segment.entry < k + n;
+}
+
+/// Part of layer k that is inside.
+float partInside(Segment segment, float k) {
+    precise float part = clamp(segment.exit - k, 0.0, 1.0) - clamp(segment.entry - k, 0.0, 1.0);
+    return part;
+}
+
+/// Without the layers that are inside in part.
+Segment wholeLayers(Segment segment) {
+    return Segment(segment.front, ceil(segment.entry), floor(segment.exit));
+}
+
+/// The layer that the stay begins in, or ends in, where it is one of the segment's that is inside in
+/// part; else below 0. One that holds both is the beginning.
+float cutAtEntry(Segment segment) {
+    float k = floor(segment.entry);
+    float part = partInside(segment, k);
+    return part > 0.0 && part < 1.0 ? k : -1.0;
+}
+float cutAtExit(Segment segment) {
+    float k = floor(segment.exit);
+    return k > segment.entry && segment.exit > k ? k : -1.0;
+}
+
+/// The nearest place in the stay.
+float kept(Segment segment, float at) {
+    return clamp(at, segment.entry, segment.exit);
+}
+
+/// The layers that a loop goes over, from a group's first.
+float firstGroup(Segment segment) {
+    return floor(max(segment.entry, 0.0) * (1.0 / float(GROUP))) * float(GROUP);
+}
+float endOfLayers(Segment segment) {
+    return segment.exit;
+}
+
+/// Layers that are inside, in whole or in part.
+float layersOf(Segment segment) {
+    return max(ceil(segment.exit) - max(floor(segment.entry), 0.0), 0.0);
 }

@@ -9,8 +9,8 @@ float jitterOf(uvec2 pixel) {
 
 void jitterRay(vec2 fragCoord, inout Ray ray) {
     precise float moved = jitterOf(uvec2(ivec2(fragCoord) - jitter.xy));
-    precise vec3 centre = ray.centre + moved * ray.step;
-    precise float nearOffset = ray.entry - moved;
+    precise vec3 centre = fma(ray.step, vec3(moved), ray.centre);
+    precise float nearOffset = ray.nearOffset - moved;
     ray.centre = centre;
-    ray.entry = nearOffset;
+    ray.nearOffset = nearOffset;
 }

@@ -1,12 +1,9 @@
 // Layers of equal view depth, as in the core paper.
-Ray rayOnLattice(EyeRay eye) {
-    precise vec3 step = eye.direction * direction0.w;
-    precise float layerLengthMm = direction0.w * eye.lengthPerDepth * directionY.w;
+Ray rayOnLattice(vec2 p) {
     Ray ray;
-    ray.centre = eye.centre;
-    ray.step = step;
-    ray.layerLengthMm = layerLengthMm;
-    ray.entry = centreX.w;
-    ray.exit = kFar;
+    ray.centre = affine(centre0.xyz, centreX.xyz, centreY.xyz, p);
+    ray.step = affine(step0.xyz, stepX.xyz, stepY.xyz, p);
+    ray.layerLength = sqrt(squaredLengthPerDepth(p));
+    ray.nearOffset = centreX.w;
     return ray;
 }

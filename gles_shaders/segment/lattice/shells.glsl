@@ -1,23 +1,26 @@
 // Layers of equal distance from the eye: of one length at any field of view.
-Ray rayOnLattice(EyeRay eye) {
-    // From the sphere's depth to its distance. The quotient is the difference
-    // sphere.w - depth * length without its cancellation, nor that of depth * t - sphere.xy,
-    // which the host resolves; behind the eye there is none, and the quotient's divisor may
+Ray rayOnLattice(vec2 p) {
+    float square = squaredLengthPerDepth(p);
+    float perLength = inversesqrt(square); // depth
+    precise float lengthPerDepth = square * perLength;
+    // From the sphere's depth to its distance, in layers: the difference
+    // sphere.w - sphere.z * length as a quotient without its cancellation, whose dividend the host
+    // resolves to a polynomial of the pixel. Behind the eye nothing cancels, and the divisor may
     // vanish.
-    precise vec2 missed = miss.xy + miss.zw * eye.pixel;
-    precise float far = dot(missed, sphere.z * eye.slope + sphere.xy) /
-                        (sphere.w + sphere.z * eye.lengthPerDepth);
-    precise float toShell = sphere.z > 0.0 ? -far : sphere.w - sphere.z * eye.lengthPerDepth;
-    precise vec3 perLength = eye.direction / eye.lengthPerDepth;
-    precise vec3 centre = eye.centre + perLength * toShell;
-    precise vec3 step = perLength * direction0.w;
-    precise float layerLengthMm = direction0.w * directionY.w;
-    precise float nearOffset = (centreY.w * eye.lengthPerDepth - sphere.w) * directionX.w;
+    precise vec2 perPixel = fma(missed.zw, p, missed.xy);
+    precise float dividend = fma(perPixel.x, p.x, fma(perPixel.y, p.y, sphere.x));
+    precise float toShell = dividend / fma(sphere.z, lengthPerDepth, sphere.w);
+    if (!kEyeIsOutside) {
+        precise float behind = (sphere.w - sphere.z * lengthPerDepth) * stepY.w;
+        toShell = sphere.z > 0.0 ? toShell : behind;
+    }
     Ray ray;
-    ray.centre = centre;
+    precise vec3 step = affine(step0.xyz, stepX.xyz, stepY.xyz, p) * perLength;
+    precise vec3 centre = fma(step, vec3(toShell),
+                              affine(centre0.xyz, centreX.xyz, centreY.xyz, p));
     ray.step = step;
-    ray.layerLengthMm = layerLengthMm;
-    ray.entry = nearOffset;
-    ray.exit = kFar;
+    ray.centre = centre;
+    ray.layerLength = 1.0;
+    ray.nearOffset = fma(centreY.w, lengthPerDepth, -stepX.w);
     return ray;
 }

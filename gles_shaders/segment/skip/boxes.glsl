@@ -1,30 +1,29 @@
 // Free lengths in blocks (Deakin and Knackstedt 2019): 0 where something visible may be met, else
 // the block is free when grown by one block less than the count. Counts of 0 and 1 are plain block
 // occupancy.
-#include "segment/skip/box.glsl"
+#include "segment/skip/faces.glsl"
 #include "segment/skip/grid.glsl"
 
-Box grownBlock(ivec3 block, int count) {
-    int grown = max(count - 1, 0);
-    return Box(vec3(block - grown), vec3(block + 1 + grown));
+/// Blocks around the one in the middle that hold all samples: what a free count must be above.
+float blocksNeeded(Ray ray, Segment segment, float first, float last, vec3 centre) {
+    vec3 a = abs(blocksAt(ray, segment, first) - centre);
+    vec3 b = abs(blocksAt(ray, segment, last) - centre);
+    vec3 most = max(a, b);
+    return max(most.x, max(most.y, most.z)) - 0.5;
 }
 
-/// The box in the segment's middle proves all of it empty, where it holds both ends.
-bool segmentIsEmpty(Ray ray, ivec2 range) {
-    int last = range.y - 1 + kSharedEnds; // sample
-    ivec3 middle = blockAt(samplePosition(ray, (range.x + last) / 2) * skipMap.xyz);
-    int count = freeCount(middle);
-    Box box = grownBlock(middle, count);
-    vec3 inside = vec3(skipBlocks.xyz + 1);
-    vec3 a = clamp(samplePosition(ray, range.x) * skipMap.xyz, vec3(0.0), inside);
-    vec3 b = clamp(samplePosition(ray, last) * skipMap.xyz, vec3(0.0), inside);
-    return count > 0 && all(greaterThanEqual(min(a, b), box.low)) &&
-           all(lessThanEqual(max(a, b), box.high));
+bool isFree(Ray ray, Segment segment, float first, float last) {
+    ivec3 block = ivec3(blocksAt(ray, segment, 0.5 * (first + last)));
+    float needed = blocksNeeded(ray, segment, first, last, vec3(block) + 0.5);
+    return countIsAbove(block, uint(min(ceil(needed), 255.0)));
 }
 
-Stretch stretchAt(vec3 uvw, Ray ray) {
-    vec3 position = uvw * skipMap.xyz;
-    ivec3 block = blockAt(position);
-    int count = freeCount(block);
-    return stretchOf(samplesInBox(grownBlock(block, count), position, ray), count > 0);
+float freeThrough(Ray ray, Segment segment, float first, float last) {
+    float middle = 0.5 * (first + last);
+    vec3 place = blocksAt(ray, segment, middle);
+    ivec3 block = ivec3(place);
+    vec3 centre = vec3(block) + 0.5;
+    float count = float(freeCount(block));
+    bool found = count > ceil(blocksNeeded(ray, segment, first, last, centre));
+    return freeWhere(found, middle + layersAhead(ray, place, centre, vec3(count - 0.5)));
 }

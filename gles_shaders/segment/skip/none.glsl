@@ -1,10 +1,10 @@
-// Nothing is skipped: one stretch for the whole ray.
-#include "segment/skip/stretch.glsl"
+// Nothing is skipped.
+const bool kLooks = false;
 
-bool segmentIsEmpty(Ray ray, ivec2 range) {
+bool isFree(Ray ray, Segment segment, float first, float last) {
     return false;
 }
 
-Stretch stretchAt(vec3 uvw, Ray ray) {
-    return Stretch(1 << 24, false);
+float freeThrough(Ray ray, Segment segment, float first, float last) {
+    return -1.0;
 }

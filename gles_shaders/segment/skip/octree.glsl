@@ -1,8 +1,6 @@
-// Octrees (Faludi et al. 2021). One look tests one node, so that neighbouring fragments stay
-// together and a written-out segment has no loop: a free node is left at its face, a leaf that is
-// not free is marched through, and anything else says to look again one level down. Levels count
-// from the leaves. See core/skip/octree.h.
-#include "segment/skip/box.glsl"
+// Octrees (Faludi et al. 2021). A look tests the smallest node that holds the first and the last
+// sample of a group. Levels count from the leaves. See core/skip/octree.h.
+#include "segment/skip/faces.glsl"
 #include "segment/skip/levels.glsl"
 uniform usampler3D skipTexels;
 
@@ -17,30 +15,35 @@ uvec4 texelOfNode(ivec3 node, int level) {
 }
 #include NODE_FILE
 
-const int kCoarsest = 31;  // beyond any tree
-int nextLevel = kCoarsest; // of the next look
-
-/// The smallest node that holds both ends proves all of the segment empty.
-bool segmentIsEmpty(Ray ray, ivec2 range) {
-    int last = range.y - 1 + kSharedEnds; // sample
-    ivec3 a = blockAt(samplePosition(ray, range.x) * skipMap.xyz);
-    ivec3 b = blockAt(samplePosition(ray, last) * skipMap.xyz);
+/// Level of the smallest node that holds two leaves.
+int levelOfBoth(ivec3 a, ivec3 b) {
     ivec3 differ = a ^ b;
-    int level = findMSB(differ.x | differ.y | differ.z) + 1;
-    return level <= octree.x && nodeIsFree(a, level);
+    return findMSB(differ.x | differ.y | differ.z) + 1;
 }
 
-Stretch stretchAt(vec3 uvw, Ray ray) {
-    vec3 position = uvw * skipMap.xyz;
-    ivec3 leaf = blockAt(position);
-    int level = min(nextLevel, octree.x);
-    bool isFree = nodeIsFree(leaf, level);
-    if (!isFree && level > 0) {
-        nextLevel = level - 1;
-        return Stretch(0, true);
+bool isFree(Ray ray, Segment segment, float first, float last) {
+    ivec3 leaf = ivec3(blocksAt(ray, segment, first));
+    int level = levelOfBoth(leaf, ivec3(blocksAt(ray, segment, last)));
+    bool found = level <= octree.x && nodeIsFree(leaf, level);
+    countLook(found);
+    return found;
+}
+
+int nextLevel = 0; // of the next look, at least
+
+/// A loop may go on to the nodes around that one: it begins above and goes down.
+float freeThrough(Ray ray, Segment segment, float first, float last) {
+    vec3 place = blocksAt(ray, segment, first);
+    ivec3 leaf = ivec3(place);
+    int least = levelOfBoth(leaf, ivec3(blocksAt(ray, segment, last)));
+    int level = max(least, min(nextLevel, octree.x));
+    bool found = false;
+    while (!found && level >= least && level <= octree.x) {
+        found = nodeIsFree(leaf, level);
+        level -= found ? 0 : 1;
     }
-    nextLevel = isFree ? level + octreeRise : octreeRise - 1;
-    ivec3 first = (leaf >> level) << level;
-    Box node = Box(vec3(first), vec3(first + (1 << level)));
-    return stretchOf(samplesInBox(node, position, ray), isFree);
+    nextLevel = found ? level + octreeRise : octreeRise - 1;
+    vec3 halfEdge = vec3(float(1 << level) * 0.5);
+    vec3 centre = vec3((leaf >> level) << level) + halfEdge;
+    return freeWhere(found, first + layersAhead(ray, place, centre, halfEdge));
 }

@@ -2,6 +2,6 @@ bool terminated(float alpha) {
     return false;
 }
 
-vec4 closed(vec4 sum, bool layersLeft) {
+vec4 closed(vec4 sum) {
     return sum;
 }

@@ -1,0 +1,20 @@
+// Layers are of another length along every ray: their opacity is made here, of what is inside.
+#include "segment/lengths/opacity.glsl"
+#include OF_LENGTH_FILE
+
+float fullLight(vec4 material) {
+    return 1.0;
+}
+
+void addLayer(inout Sum sum, inout float front, Ray ray, Segment segment, float k) {
+    // Halvings of light per unit of a texel's alpha.
+    float perLayer = ray.layerLength * step0.w;
+    add(sum, ofLength(layerAt(ray, segment, k, front), perLayer * partInside(segment, k)));
+}
+
+/// Every layer is weighed, those at the ends too.
+Segment composited(Segment segment) {
+    return segment;
+}
+void addEntry(inout Sum sum, Ray ray, Segment segment) {}
+void addExit(inout Sum sum, Ray ray, Segment segment) {}
