@@ -62,11 +62,10 @@ def _run_once(gpu, program, options, labels, rows):
     with tempfile.TemporaryFile("w+") as asked:
         asked.write("".join(f"{label}\n" for label in labels))
         asked.seek(0)
-        process = subprocess.Popen(words, env=environment, stdin=asked, stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.PIPE, text=True, errors="replace",
-                                   preexec_fn=lambda: os.nice(10))
-        begun, said = _follow(process, rows)
-        status = process.wait()
+        with subprocess.Popen(words, env=environment, stdin=asked, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                              text=True, errors="replace", preexec_fn=lambda: os.nice(10)) as process:
+            begun, said = _follow(process, rows)
+        status = process.returncode
     if begun is not None and status != 0:
         begun["failed"] = (f"the compiler took more than {PATIENCE_S} s" if status == -signal.SIGKILL else
                            f"the compiler ended with status {status}")

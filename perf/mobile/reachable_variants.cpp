@@ -1,9 +1,11 @@
 #include "perf/mobile/reachable_variants.h"
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "core/plan/frame_plan.h"
+#include "core/plan/shader_axes.h"
 
 namespace slabcast {
 
@@ -98,6 +100,21 @@ std::set<ShaderVariant> reachableVariants(int choices) {
         };
     choose({}, 0, choices);
     return reached;
+}
+
+std::set<ShaderVariant> validVariants() {
+    std::vector<ShaderVariant> variants(1);
+    for (const AxisInfo& axis : kAxes) {
+        std::vector<ShaderVariant> next;
+        for (const ShaderVariant& variant : variants) {
+            for (std::size_t value = 0; value < axis.count; ++value) {
+                axis.choose(next.emplace_back(variant), value);
+            }
+        }
+        variants = std::move(next);
+    }
+    std::erase_if(variants, [](const ShaderVariant& variant) { return !variant.valid(); });
+    return {variants.begin(), variants.end()};
 }
 
 } // namespace slabcast

@@ -11,4 +11,7 @@ namespace slabcast {
 /// to choose, of which two choices have 300 and three 2300. Tested by: shader_variant_test.cpp
 std::set<ShaderVariant> reachableVariants(int choices);
 
+/// Every variant there is, reached or not: values of all axes that go together.
+std::set<ShaderVariant> validVariants();
+
 } // namespace slabcast

@@ -6,7 +6,8 @@ usage: perf/mobile/table.py [--out DIR] [--gpu NAME,...] [--only REGEX | --rows]
   --gpu NAMES     of the list in perf/mobile/gpus.py [all]
   --only REGEX    variants whose label it is found in, as '^post[+]balls[+]terminate/unroll16 shells$' [all]
   --rows          the variants that perf/mobile/rows.csv names
-  --choices N     those that plans reach from settings with N choices other than the default [2]
+  --choices N     those that plans reach from settings with N choices other than the default, 1 to 3 [2]; all: every
+                  variant there is
   --program FILE  slabcast-compile [build/bin/slabcast-compile]
   --print         a line per row on stdout, no files: for a look while a shader is changed
   --commit        to perf/mobile/table.csv, too: what tests compare with
@@ -89,7 +90,7 @@ def arguments():
     parser.add_argument("--gpu", default=",".join(gpus.GPUS))
     parser.add_argument("--only", default="")
     parser.add_argument("--rows", action="store_true")
-    parser.add_argument("--choices", default="2", choices=("1", "2", "3"))
+    parser.add_argument("--choices", default="2", choices=("1", "2", "3", "all"))
     parser.add_argument("--program", type=Path, default=ROOT / "build" / "bin" / "slabcast-compile")
     parser.add_argument("--print", action="store_true")
     parser.add_argument("--commit", action="store_true")

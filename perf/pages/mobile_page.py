@@ -55,6 +55,14 @@ def cache_words(size, cache):
     return f"{cache / 1024:.3g} KiB: {'fits' if size <= cache else f'{size / cache:.1f} times over'}"
 
 
+def room(row):
+    """Registers that it takes, and how many fragments are under way beside it."""
+    said = [f"{row.figure(name):.0f} {words}" for name, words in (("full_registers", "full"), ("half_registers", "half"))
+            if row.figure(name) is not None]
+    said += [plural(int(row.figure(name)), name[:-1]) for name in ("threads", "waves") if row.figure(name) is not None]
+    return ", ".join(said) or MISSING
+
+
 def resources(table):
     """What a fragment holds on to, of every named row as it is now."""
     rows = []
@@ -64,11 +72,8 @@ def resources(table):
             if row is None or row.cost is None:
                 continue
             size = row.figure("code_bytes") or 16 * (row.figure("quadwords") or 0)
-            spilled = f"{row.figures.get('spills', 0):.0f} : {row.figures.get('fills', 0):.0f}"
-            room = (f"{plural(int(row.figures['threads']), 'thread')}" if "threads" in row.figures
-                    else f"{row.figures['full_registers']:.0f} full, {row.figures['half_registers']:.0f} half, "
-                         f"{plural(int(row.figures['waves']), 'wave')}")
-            rows.append([f"{esc(about['title'])} <i>{esc(name)}</i>", room, spilled, f"{size / 1024:.1f}",
+            spilled = f"{figures(row.figure('spills'))} : {figures(row.figure('fills'))}"
+            rows.append([f"{esc(about['title'])} <i>{esc(name)}</i>", room(row), spilled, f"{size / 1024:.1f}",
                          cache_words(size, about.get("cache_bytes")), f"<code>{esc(labels['general'])}</code>"])
     heads = ["registers and code of", "room", "spills : fills", "code, KiB", "instruction cache",
              "variant"]

@@ -2,8 +2,9 @@
 
 from matplotlib.ticker import FuncFormatter, NullLocator
 
-from page_svg import INK, MUTED, NARROW, RULE, WIDE, plain_log_ticks, plain_number, plt, svg
+from page_svg import INK, MUTED, NARROW, WIDE, plain_log_ticks, plain_number, plt, svg
 
+REST = "#c9ccd1"  # every variant without a name
 COLOURS = ("#1d6091", "#b5532a", "#5aa0a8", "#d79a55", "#6a5aa8", "#8a6d3b", "#3b7d4f", "#a83f6f", "#22262b", "#7f8c3a")
 ARITHMETIC, TEXTURE, OTHER, BEFORE = "#1d6091", "#d79a55", "#8b8f96", "#b5532a"
 
@@ -30,7 +31,7 @@ def per_layer(table, narrow):
     for gpu, axes in panels:
         series = table.series(gpu)
         for rows in series.values():
-            axes.plot([row.layers for row in rows], [row.per_layer for row in rows], color=RULE, lw=0.8, zorder=1)
+            axes.plot([row.layers for row in rows], [row.per_layer for row in rows], color=REST, lw=0.8, zorder=1)
         for (family, _), colour in zip(named, COLOURS):
             if rows := series.get(family):
                 axes.plot([row.layers for row in rows], [row.per_layer for row in rows], "o-", color=colour, lw=1.5,
@@ -45,7 +46,7 @@ def per_layer(table, narrow):
     for _, axes in panels[-1:] if narrow else panels[-2:]:
         axes.set_xlabel("layers per plane")
     key = [(words, colour, "o", False, "") for (_, words), colour in zip(named, COLOURS)]
-    return svg(figure, f"layers{'-n' if narrow else ''}", key + [("every other variant", RULE, None, False, "")])
+    return svg(figure, f"layers{'-n' if narrow else ''}", key + [("every other variant", REST, None, False, "")])
 
 
 def _bars(axes, table, gpu, names):
@@ -55,12 +56,12 @@ def _bars(axes, table, gpu, names):
         row, before = table.cell(gpu, name, "general"), table.cell(gpu, name, "before")
         if row is not None and row.cost is not None:
             if mali:
-                axes.barh(place - 0.19, row.figure("arithmetic"), height=0.34, color=ARITHMETIC)
-                axes.barh(place + 0.19, row.figure("texture"), height=0.34, color=TEXTURE)
+                axes.barh(place - 0.19, row.figure("arithmetic") or 0.0, height=0.34, color=ARITHMETIC)
+                axes.barh(place + 0.19, row.figure("texture") or 0.0, height=0.34, color=TEXTURE)
             else:
-                work = row.figure("instructions") - row.figure("nops")
-                axes.barh(place, work, height=0.6, color=ARITHMETIC)
-                axes.barh(place, row.figure("nops"), left=work, height=0.6, color=OTHER)
+                nops = row.figure("nops") or 0.0
+                axes.barh(place, row.cost - nops, height=0.6, color=ARITHMETIC)
+                axes.barh(place, nops, left=row.cost - nops, height=0.6, color=OTHER)
         if before is not None and before.cost is not None:
             axes.plot([before.cost, before.cost], [place - 0.4, place + 0.4], color=BEFORE, lw=1.8)
     axes.set_yticks(range(len(names)), names, fontsize=7)

@@ -96,7 +96,7 @@ Result<Session> openSession(const SessionOptions& options) {
         return tl::unexpected(device.error());
     }
     if (*known != nullptr) {
-        say(fmt::format("what a {} can do is assumed, and nothing of it tested; {}",
+        say(fmt::format("what the {} can do is assumed, and nothing of it tested; {}",
                         (*known)->renderer, device->caps().driver));
     }
     sayUnknownMasks(mask == nullptr ? "" : mask);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <regex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/gl/api.h"
@@ -23,13 +24,15 @@ namespace {
 using namespace slabcast;
 
 constexpr const char* kUsage =
-    "usage: slabcast-compile [--only REGEX] [--choices 1|2|3] [--empty-loops] [--half GROUPS] "
+    "usage: slabcast-compile [--only REGEX] [--choices 1|2|3|all] [--empty-loops] [--half GROUPS] "
     "[--list]\n"
     "Compiles the segment shaders that plans reach, by the driver at hand, and draws a pixel with\n"
     "each. Behind a line {\"variant\": ...} on stderr stands what the driver says of it.\n"
     "  --only REGEX    those whose label it is found in; --list shows labels\n"
     "  --labels        those whose labels stand on stdin, a line each, in this order\n"
-    "  --choices N     settings that differ from the default in N choices [2]\n"
+    "  --choices N     plans of settings that differ from the default in N choices [2]; all: "
+    "every\n"
+    "                  variant there is\n"
     "  --empty-loops   loops alone, without what they do for layers\n"
     "  --half GROUPS   results of these groups in 16 bits (kHalf... of shader_variant.h)\n"
     "  --list          labels on stdout, and nothing compiled\n";
@@ -37,7 +40,7 @@ constexpr const char* kUsage =
 struct Request {
     CompileOptions compile;
     std::optional<std::regex> only;
-    int choices = 2;
+    int choices = 2; // 0: all
     bool labels = false;
     bool list = false;
 };
@@ -62,6 +65,9 @@ std::optional<Request> parse(int argc, char** argv) try {
             request.list = true;
         } else if (flag == "--empty-loops") {
             request.compile.loopBodies = false;
+        } else if (flag == "--choices" && value == std::string_view("all")) {
+            request.choices = 0;
+            ++k;
         } else if (flag == "--only" && *value != '\0') {
             request.only = std::regex(argv[++k]);
         } else if (const auto number = numberOf(value, flag == "--half" ? kHalfAll : 3);
@@ -81,7 +87,8 @@ std::optional<Request> parse(int argc, char** argv) try {
 std::vector<ShaderVariant> chosen(const Request& request) {
     std::map<std::string, ShaderVariant> byLabel;
     std::vector<ShaderVariant> variants;
-    for (const ShaderVariant& variant : reachableVariants(request.choices)) {
+    for (const ShaderVariant& variant :
+         request.choices == 0 ? validVariants() : reachableVariants(request.choices)) {
         const std::string label = labelOf(variant);
         const bool fits = !request.only || std::regex_search(label, *request.only);
         if (!variant.counts && fits && (request.compile.loopBodies || variant.unroll == 0)) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -27,6 +28,25 @@ TEST(CompileVariants, MoreChoicesReachMoreAndKeepWhatFewerReached) {
     EXPECT_GT(two.size(), one.size());
     EXPECT_EQ(
         two.count({.skip = SkipForm::Balls, .shaded = true, .terminates = true, .unroll = 16}), 1U);
+}
+
+TEST(CompileVariants, WhatPlansReachIsAmongAllThereIs) {
+    const std::set<ShaderVariant> all = validVariants();
+    const std::set<ShaderVariant> two = reachableVariants(2);
+    EXPECT_TRUE(std::includes(all.begin(), all.end(), two.begin(), two.end()));
+    EXPECT_GT(all.size(), two.size());
+}
+
+// Or the cost of a loop's layer could not be told.
+TEST(CompileVariants, EveryLoopHasABody) {
+    for (const ShaderVariant& variant : reachableVariants(1)) {
+        const std::string text = shaderText(variant).value().fragment;
+        const std::optional<std::string> empty = withoutLoopBody(text);
+        if (variant.unroll == 0) {
+            ASSERT_TRUE(empty) << labelOf(variant);
+            EXPECT_NE(*empty, text);
+        }
+    }
 }
 
 TEST(CompileVariants, DescriptionsHoldEveryAxisThatVaries) {
