@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -15,7 +14,6 @@
 namespace slabcast {
 
 class Stage;
-struct Prediction;
 
 /// The key of what words name, snake_case as all keys are: of "early exit" or "early-exit"
 /// early_exit. Tested by: settings_json_test.cpp
@@ -29,9 +27,6 @@ Json toJson(const FramePlan& plan);
 Json toJson(const BuiltSkip& skip);   // null where nothing was built
 Json toJson(const FrameTimes& times); // null of none; percentiles null below kFewestForPercentiles
 Json toJson(const Result<WorkCounters>& counters); // null where they cannot be had
-
-/// By GPU, what a model says of it; nothing of this was measured.
-Json toJson(std::span<const Prediction> predictions);
 
 /// A ratio with its interval: NAME, NAME_low and NAME_high; and COVERAGE, which ratios of as many
 /// rounds share.

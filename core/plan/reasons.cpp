@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "core/plan/decisions/decision.h"
+#include "core/plan/known_gpus.h"
 #include "core/plan/settings_check.h"
 
 namespace slabcast {
@@ -159,9 +160,16 @@ std::string costOfLooks(const double* numbers) {
 }
 
 std::string ruleOfRatio(const double* numbers) {
-    return static_cast<RatioRule>(numbers[0]) == RatioRule::WholeRays
-               ? "a software driver loops over whole rays, which says nothing of a GPU"
-               : "the middle of the range that is best on phones";
+    switch (static_cast<RatioRule>(numbers[0])) {
+    case RatioRule::WholeRays:
+        return "a software driver loops over whole rays, which says nothing of a GPU";
+    case RatioRule::Modelled:
+        return std::string("a model's best on ") +
+               kKnownGpus[static_cast<std::size_t>(numbers[1])].title + ", for volumes like this";
+    case RatioRule::Middle:
+        break;
+    }
+    return "the middle of the range that is best on phones";
 }
 
 std::string measuredRatios(const FramePlan& plan) {

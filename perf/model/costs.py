@@ -24,10 +24,11 @@ from table_files import write_whole  # noqa: E402
 
 MADE = HERE / "segment_costs.inc"
 GPUS = ("g71", "g52", "g57", "adreno630", "adreno660", "adreno740")  # the compilers of gpu_rates.cpp
-# Parts come from two lengths, with and without skipping; slices and short segments stand for themselves. Light, texels
-# that are fetched one by one, jitter and octrees are left out: no plan chooses them by itself on a phone.
-FORMS = "unroll1|unroll2|unroll4|unroll8|unroll16|loop"
-LEFT_OUT = re.compile(r"[+](exact|shaded|counts|[a-z-]*octree)")
+# Parts come from two lengths, with and without skipping; slices and short segments stand for themselves. Of every variant
+# there is; light, texels that are fetched one by one, jitter, structures that nobody gets unasked, and shells whose layers'
+# opacity is not in a table are left out.
+FORMS = re.compile(r"/(unroll1|unroll2|unroll4|unroll8|unroll16|loop)( shells)?$")
+LEFT_OUT = re.compile(r"[+](exact|shaded|counts|boxes|[a-z-]*octree)|^(post|preclassified)(?!.*[+]baked).* shells$")
 # Per cycle, as Mesa's statistics have it (bi_print_stats, va_print_stats).
 MESA_ISSUES = {"bifrost": 24, "valhall": 64}
 MESA_TEXELS = {"bifrost": 2, "valhall": 4}
@@ -48,12 +49,12 @@ def line_of(gpu, row):
 
 
 def lines(program):
-    labels = [label for label in labels_of(program, ["--only", rf"^[^ /]*/({FORMS})( shells)?$"])
-              if not LEFT_OUT.search(label)]
+    labels = [label for label in labels_of(program, ["--choices", "all"])
+              if FORMS.search(label) and not LEFT_OUT.search(label)]
 
     def of(name):
         gpu = gpus.GPUS[name]
-        rows = compile_all(gpu, program, labels, [],
+        rows = compile_all(gpu, program, labels, ["--choices", "all"],
                            lambda count: print(f"{gpu.title}: {count} of {len(labels)}", file=sys.stderr, flush=True))
         return [line_of(gpu, rows[label]) for label in labels]
 

@@ -19,6 +19,7 @@ FrameLoad loadOf(const FrameWork& work, const SegmentCosts& costs, const GpuRate
     const double lookTimes = diverges ? work.lookDivergence : 1.0;
     const double layers = work.layers * layerTimes;
     const double looks = work.looks * lookTimes;
+    const double ends = std::min(work.rays * layerTimes, work.fragments);
     const double turns = work.turns * std::max(layerTimes, lookTimes);
     const double ofVolume = work.volumeFetches * layerTimes;
     const double ofTables = std::max(0.0, layers * costs.layer.fetches - ofVolume);
@@ -26,9 +27,9 @@ FrameLoad loadOf(const FrameWork& work, const SegmentCosts& costs, const GpuRate
         work.filtered ? gpu.texelsOf3d * (work.wideTexels ? 2.0 : 1.0) : 1.0; // of a fetch
     FrameLoad load;
     load.slots = work.fragments * costs.fragment.slots + layers * costs.layer.slots +
-                 looks * costs.look.slots + turns * costs.turn.slots;
+                 looks * costs.look.slots + ends * costs.ends.slots + turns * costs.turn.slots;
     load.texels = work.fragments * costs.fragment.fetches + ofVolume * texels + ofTables +
-                  looks * costs.look.fetches;
+                  looks * costs.look.fetches + ends * costs.ends.fetches;
     load.fragments = work.fragments;
     load.pixelsBlended = work.fragments * std::max(1.0, work.bytesPerPixel / kUsualPixelBytes);
     // A layer of our own is stored and loaded before the target is stored.

@@ -19,6 +19,7 @@ struct SegmentCosts {
     PartCosts fragment; // set-up and end
     PartCosts layer;    // that is evaluated, the volume's fetches included
     PartCosts look;     // at the skip structure
+    PartCosts ends;     // of a ray: the layers that its entry and its exit cut, where apart
     PartCosts turn;     // of a loop over groups, beside what is done in it
     double codeBytes = 0.0;
 };
@@ -27,6 +28,7 @@ struct SegmentCosts {
 struct FrameWork {
     double pixels = 0.0; // of all views
     double fragments = 0.0;
+    double rays = 0.0;   // pixels that are drawn at all
     double layers = 0.0; // evaluated
     double volumeFetches = 0.0;
     double looks = 0.0;

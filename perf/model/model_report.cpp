@@ -4,7 +4,7 @@
 
 #include "perf/model/headsets.h"
 #include "perf/model/paper_model.h"
-#include "perf/model/predict.h"
+#include "perf/model/predict_json.h"
 #include "perf/number.h"
 #include "perf/settings_json.h"
 #include "perf/stage.h"
@@ -26,7 +26,7 @@ std::vector<int> lengthsOf(const ModelDesc& desc) {
 Json divergenceByWave(std::span<const Prediction> predictions) {
     Json all = Json::object();
     for (const Prediction& one : predictions) {
-        all[std::to_string(one.gpu->waveWidth * one.gpu->waveHeight)] =
+        all["wave_" + std::to_string(one.gpu->waveWidth * one.gpu->waveHeight)] =
             Json::list({one.work.layerDivergence, one.work.lookDivergence});
     }
     return all;
@@ -59,6 +59,7 @@ Result<Json> rowOf(Stage& stage, const GpuRates& gpu, int length) {
                         {"total_layers", total},
                         {"skip", name(one.plan.skip)},
                         {"fragments", one.work.fragments},
+                        {"rays", one.work.rays},
                         {"layers_evaluated", one.work.layers},
                         {"volume_fetches", one.work.volumeFetches},
                         {"skip_fetches", one.work.looks},

@@ -1,6 +1,6 @@
 #include "perf/model/predict.h"
 
-#include <numeric>
+#include <algorithm>
 
 #include "core/base/error.h"
 #include "core/scene/known_devices.h"
@@ -17,6 +17,11 @@ double layersIn(const PixelWork& pixel) {
 }
 double looksIn(const PixelWork& pixel) {
     return static_cast<double>(pixel.skipFetches);
+}
+
+double raysOf(std::span<const PixelWork> work) {
+    return static_cast<double>(std::count_if(
+        work.begin(), work.end(), [](const PixelWork& pixel) { return pixel.fragments > 0; }));
 }
 
 WorkCounters sumOf(std::span<const PixelWork> work) {
@@ -72,6 +77,7 @@ Result<std::vector<Prediction>> predictions(const Stage& stage, const Settings& 
         }
         Prediction one{&gpu, *plan, frameWork(stage, *plan, counters), {}};
         const glm::ivec2 wave(gpu.waveWidth, gpu.waveHeight);
+        one.work.rays = raysOf(work);
         one.work.layerDivergence = divergence(work, size, wave, layersIn);
         one.work.lookDivergence = divergence(work, size, wave, looksIn);
         one.terms = modelFrame(one.work, *costs, gpu);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/number_text.h"
+#include "core/plan/shader_axes.h"
 #include "perf/mobile/compile_variants.h"
 
 namespace slabcast {
@@ -75,37 +76,13 @@ PartCosts rest(const WholeCosts& whole, const PartCosts& layer, double layers,
             std::max(0.0, whole.fetches - layer.fetches * layers - look.fetches * looks)};
 }
 
-} // namespace
-
-int layersPerGroup(const ShaderVariant& variant) {
-    switch (variant.unroll) {
-    case 1:
-    case 2:
-        return variant.unroll;
-    case 4:
-    case 12:
-        return 4;
-    default:
-        return 8;
-    }
-}
-
-std::optional<SegmentCosts> segmentCosts(std::string_view gpu, const ShaderVariant& asked) {
-    ShaderVariant variant = asked;
-    // Mesa 22's Adreno cannot fetch the target: there the same without stands for it.
-    variant.fetchesTarget = asked.fetchesTarget && findLike(gpu, asked, 8, true) != nullptr;
+/// Fragment, layer and look of a shader of groups of 8.
+std::optional<SegmentCosts> partsOf(std::string_view gpu, const ShaderVariant& variant) {
     const bool skips = variant.skip != SkipForm::None;
-    const WholeCosts* whole = find(gpu, variant);
     const WholeCosts* eight = findLike(gpu, variant, 8, skips);
     const WholeCosts* sixteen = findLike(gpu, variant, 16, skips);
     const WholeCosts* plainEight = findLike(gpu, variant, 8, false);
     const WholeCosts* plainSixteen = findLike(gpu, variant, 16, false);
-    if (variant.unroll == 1 && whole != nullptr) { // a slice: all of it is done for every fragment
-        SegmentCosts costs;
-        costs.fragment = {whole->slots, std::max(0.0, whole->fetches - 1.0)};
-        costs.codeBytes = whole->codeBytes;
-        return costs;
-    }
     if (eight == nullptr || sixteen == nullptr || plainEight == nullptr ||
         plainSixteen == nullptr) {
         return std::nullopt;
@@ -118,21 +95,75 @@ std::optional<SegmentCosts> segmentCosts(std::string_view gpu, const ShaderVaria
                       std::max(0.0, group.fetches - 8.0 * costs.layer.fetches)};
     }
     costs.fragment = rest(*eight, costs.layer, 8.0, costs.look, 1.0);
-    // Others are as these and longer; a loop is as one group and what it takes to go round.
-    const double layers = variant.unroll;
-    costs.codeBytes =
-        eight->codeBytes + (sixteen->codeBytes - eight->codeBytes) * (layers - 8.0) / 8.0;
-    if (variant.unroll == 0) {
-        if (whole == nullptr) {
-            return std::nullopt;
-        }
-        costs.turn = difference(*whole, *eight, 1.0);
-        costs.codeBytes = whole->codeBytes;
-    } else if (whole != nullptr) {
-        costs.fragment =
-            rest(*whole, costs.layer, layers, costs.look, layers / layersPerGroup(variant));
-        costs.codeBytes = whole->codeBytes;
+    const double perLayer = (sixteen->codeBytes - eight->codeBytes) / 8.0;
+    costs.codeBytes = eight->codeBytes + perLayer * (variant.unroll - 8.0);
+    return costs;
+}
+
+/// What a box costs a fragment beside none.
+PartCosts boxOf(std::string_view gpu, ShaderVariant variant) {
+    variant.interval = Interval::Box;
+    const std::optional<SegmentCosts> box = partsOf(gpu, variant);
+    variant.interval = Interval::None;
+    const std::optional<SegmentCosts> none = partsOf(gpu, variant);
+    return box && none ? PartCosts{box->fragment.slots - none->fragment.slots,
+                                   box->fragment.fetches - none->fragment.fetches}
+                       : PartCosts{};
+}
+
+/// Of layers of one length those at a ray's ends stand apart, behind a branch: what a box costs
+/// beside cutting the ray, which is all that it costs where every layer has its own length.
+PartCosts endsOf(std::string_view gpu, const ShaderVariant& variant) {
+    if (variant.lengths != Lengths::Baked || variant.interval != Interval::Box) {
+        return {};
     }
+    ShaderVariant cut = variant;
+    cut.lengths = Lengths::PerRay;
+    cut.lattice = LatticeKind::Planar;
+    const PartCosts both = boxOf(gpu, variant);
+    const PartCosts cutting = boxOf(gpu, cut);
+    return {std::max(0.0, both.slots - std::max(0.0, cutting.slots)),
+            std::max(0.0, both.fetches - std::max(0.0, cutting.fetches))};
+}
+
+PartCosts without(const PartCosts& all, const PartCosts& part) {
+    return {std::max(0.0, all.slots - part.slots), std::max(0.0, all.fetches - part.fetches)};
+}
+
+} // namespace
+
+int layersPerGroup(const ShaderVariant& variant) {
+    return axes::kForm[axes::formOf(variant)].layersPerGroup;
+}
+
+std::optional<SegmentCosts> segmentCosts(std::string_view gpu, const ShaderVariant& asked) {
+    ShaderVariant variant = asked;
+    // Mesa 22's Adreno cannot fetch the target: there the same without stands for it.
+    variant.fetchesTarget = asked.fetchesTarget && findLike(gpu, asked, 8, true) != nullptr;
+    const WholeCosts* whole = find(gpu, variant);
+    // Of a slice or two all is done for every fragment.
+    if ((variant.unroll == 1 || variant.unroll == 2) && whole != nullptr) {
+        SegmentCosts costs;
+        costs.fragment = {whole->slots, std::max(0.0, whole->fetches - variant.unroll)};
+        costs.codeBytes = whole->codeBytes;
+        return costs;
+    }
+    std::optional<SegmentCosts> costs = partsOf(gpu, variant);
+    if (!costs || (whole == nullptr && variant.unroll == 0)) {
+        return std::nullopt;
+    }
+    // Other lengths are as these; a loop is as one group and what it takes to go round.
+    if (whole != nullptr) {
+        costs->codeBytes = whole->codeBytes;
+    }
+    if (variant.unroll == 0) {
+        costs->turn = difference(*whole, *findLike(gpu, variant, 8, true), 1.0);
+    } else if (whole != nullptr) {
+        const double groups = double(variant.unroll) / layersPerGroup(variant);
+        costs->fragment = rest(*whole, costs->layer, variant.unroll, costs->look, groups);
+    }
+    costs->ends = endsOf(gpu, variant);
+    costs->fragment = without(costs->fragment, costs->ends);
     return costs;
 }
 

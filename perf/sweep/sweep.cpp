@@ -5,7 +5,7 @@
 #include "core/plan/settings_table.h"
 #include "perf/error/scene_key.h"
 #include "perf/json.h"
-#include "perf/model/predict.h"
+#include "perf/model/predict_json.h"
 #include "perf/number.h"
 #include "perf/race.h"
 #include "perf/run_store.h"

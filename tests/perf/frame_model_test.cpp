@@ -61,6 +61,18 @@ TEST(FrameModel, TermsAreWorkTimesCostsOverRates) {
     EXPECT_EQ(terms.codeHighMs, 0.0);
 }
 
+TEST(FrameModel, EndsAreARaysAndNoMoreThanItsFragments) {
+    SegmentCosts apart = kCosts;
+    apart.ends = {.slots = 40.0, .fetches = 4.0};
+    FrameWork drawn = work();
+    drawn.rays = 250.0;
+    const ModelTerms plain = modelFrame(drawn, kCosts, kGpu);
+    EXPECT_DOUBLE_EQ(modelFrame(drawn, apart, kGpu).issueMs, plain.issueMs + 1.0);
+    EXPECT_DOUBLE_EQ(modelFrame(drawn, apart, kGpu).textureMs, plain.textureMs + 0.25);
+    drawn.rays = 2000.0;
+    EXPECT_DOUBLE_EQ(modelFrame(drawn, apart, kGpu).issueMs, plain.issueMs + 4.0);
+}
+
 TEST(FrameModel, WideTexelsCostTwiceAgain) {
     FrameWork wide = work();
     wide.wideTexels = true;

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <optional>
 
 #include "core/plan/decisions/decision.h"
+#include "core/plan/known_gpus.h"
 
 namespace slabcast {
 
@@ -28,10 +30,32 @@ struct Chosen {
     RatioRule rule = RatioRule::Middle; // of RatioUnmeasured
 };
 
+bool somethingIsSkipped(const PlanInput& in) {
+    const bool built = in.facts.skip.structure != SkipStructure::None;
+    return built && (in.settings.skip ? in.settings.skip != SkipStructure::None
+                                      : in.facts.occupiedFraction <= kWorthSkipping);
+}
+
+/// By the model of a known GPU; nothing of others, or where it cannot be written out as asked for.
+std::optional<int> modelledLayers(const PlanInput& in, int total) {
+    const KnownGpu* gpu = findKnownGpu(in.caps.renderer);
+    if (gpu == nullptr) {
+        return std::nullopt;
+    }
+    const int known = somethingIsSkipped(in) ? gpu->layersSkipping : gpu->layersPlain;
+    const int layers = known == 0 ? total : known;
+    const bool can = in.settings.form != SegmentForm::Unrolled || unrollLengthFor(layers) != 0;
+    return can ? std::optional(layers) : std::nullopt;
+}
+
 /// Without a clock: the same device gives the same ratio, whatever else it does. A software driver
 /// runs loops as they are and pays for every fragment and every blend, so its rays are whole; that
 /// says nothing of a GPU.
 Chosen byRule(const PlanInput& in, int total) {
+    if (const std::optional<int> layers = modelledLayers(in, total)) {
+        return {dealtOut(total, *layers, formFor(in, *layers)), ReasonId::RatioUnmeasured,
+                RatioRule::Modelled};
+    }
     const bool whole = in.caps.isSoftware && in.settings.form != SegmentForm::Unrolled;
     const int length = whole ? total : kMiddleLayersPerPlane;
     return {dealtOut(total, length, formFor(in, length)), ReasonId::RatioUnmeasured,
@@ -76,9 +100,11 @@ Result<void> decideRatio(const PlanInput& in, FramePlan& plan) {
     plan.planes = ratio.planes;
     plan.layersPerPlane = ratio.layersPerPlane;
     plan.variant.unroll = unrolled ? length : 0;
-    because(
-        plan, reason,
-        {double(ratio.planes), double(ratio.layersPerPlane), unrolled ? 1.0 : 0.0, double(rule)});
+    const KnownGpu* gpu = findKnownGpu(in.caps.renderer);
+    const auto index = gpu == nullptr ? 0.0 : static_cast<double>(gpu - kKnownGpus);
+    because(plan, reason,
+            {double(ratio.planes), double(ratio.layersPerPlane), unrolled ? 1.0 : 0.0, double(rule),
+             index});
     if (reason == ReasonId::RatioFastest) {
         for (const RatioMeasurement& one :
              in.measurements.first(std::min(in.measurements.size(), kMostRatios))) {
