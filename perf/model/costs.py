@@ -24,9 +24,9 @@ from table_files import write_whole  # noqa: E402
 
 MADE = HERE / "segment_costs.inc"
 GPUS = ("g71", "g52", "g57", "adreno630", "adreno660", "adreno740")  # the compilers of gpu_rates.cpp
-# Parts come from two lengths, with and without skipping; slices and short segments stand for themselves. Of every variant
-# there is; light, texels that are fetched one by one, jitter, structures that nobody gets unasked, and shells whose layers'
-# opacity is not in a table are left out.
+# Parts come from two lengths, with and without skipping; slices and short segments stand for themselves. Of every
+# variant there is; light, texels that are fetched one by one, jitter, structures that nobody gets unasked, and shells
+# whose layers' opacity is not in a table are left out.
 FORMS = re.compile(r"/(unroll1|unroll2|unroll4|unroll8|unroll16|loop)( shells)?$")
 LEFT_OUT = re.compile(r"[+](exact|shaded|counts|boxes|[a-z-]*octree)|^(post|preclassified)(?!.*[+]baked).* shells$")
 # Per cycle, as Mesa's statistics have it (bi_print_stats, va_print_stats).

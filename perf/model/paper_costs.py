@@ -6,7 +6,8 @@ The shaders are written as sections 2.1 to 2.3 of the paper describe them: the p
 polygon's vertices, the ray from the eye through it; a fragment whose layers all lie outside the volume is discarded, by
 its own position, unless it has them all; then layers are sampled where they lie inside, one after another, and
 composited. With skipping, a texel without opacity holds the distance to the closest with some, and so many layers are
-left out, one by one. The paper prints no code: what of this it does not say is said here. A line is a block of the scheduled shader: its tuples, and what it does.
+left out, one by one. The paper prints no code: what of this it does not say is said here.
+A line is a block of the scheduled shader: its tuples, and what it does.
 """
 
 import ctypes

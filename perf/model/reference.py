@@ -24,8 +24,8 @@ def lines(scene, folder):
     pixels = 2 * headset["eye_pixels"][0] * headset["eye_pixels"][1]
     for row in headset["rows"]:
         layers = 0 if row["planes"] == 1 else row["layers_per_plane"]
-        numbers = [layers, row["total_layers"], pixels, row["fragments"], row["rays"], row["layers_evaluated"], row["volume_fetches"],
-                   row["skip_fetches"], row["volume_bytes"]]
+        numbers = [layers, row["total_layers"], pixels, row["fragments"], row["rays"], row["layers_evaluated"],
+                   row["volume_fetches"], row["skip_fetches"], row["volume_bytes"]]
         for wave in WAVES:
             numbers += row["divergence_by_wave"][wave]
         yield ",".join([scene, *(f"{number:.6g}" for number in numbers)])

@@ -10,7 +10,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
 from cli_case import CliTest, main  # noqa: E402
-from report_keys import odd_keys  # noqa: E402
+from report_keys import odd_keys, undocumented_keys  # noqa: E402
 
 
 class Model(CliTest):
@@ -20,7 +20,8 @@ class Model(CliTest):
             self.assertRegex(line, r"\Amodel: ")
         report = json.loads((self.folder / "m" / "model.json").read_text())
         self.assertEqual(odd_keys(report), [])
-        self.assertEqual([headset["name"] for headset in report["headsets"]], ["Quest 2", "Quest 3"])
+        self.assertEqual(undocumented_keys(report, "model"), [])
+        self.assertEqual([headset["name"] for headset in report["headsets"]], ["Quest 2", "Quest 3", "Galaxy S8"])
         for headset in report["headsets"]:
             rows = headset["rows"]
             self.assertEqual([row["layers_per_plane"] for row in rows][:2], [1, 8])

@@ -92,9 +92,9 @@ class Ratios(CliTest):
         self.turn()
         (table,) = self.tables()
         content = json.loads(table.read_text())
-        content["scenes"][0]["ratios"].append({"planes": 4, "layers_per_plane": 2, "unrolled": False, "frame_ms": 1e-6})
+        content["scenes"][0]["ratios"].append({"planes": 4, "layers_per_plane": 2, "unrolled": True, "frame_ms": 1e-6})
         table.write_text(json.dumps(content))
-        self.assertIn("ratio 4x2 loop: fastest", self.turn())
+        self.assertIn("ratio 4x2 unrolled: fastest", self.turn())
 
     def test_what_is_kept_is_of_one_scene_its_view_and_its_settings(self):
         self.turn()
