@@ -24,6 +24,10 @@ namespace {
 // 9.4 Gpixel/s of the 640, so 8 a core and clock (github.com/azhirnov/cpu-gpu-arch, Adreno-600).
 // Twice for 3D is taken from Mali: nothing is published. Waves are of 64, as Mesa's
 // threadsize_base; their shape on the screen is not published.
+//
+// Clocks and memory of the G52's and G57's devices, and memory of the Adrenos' devices, are as
+// their makers state them on product pages that were not at hand: they matter where memory, or a
+// device of one of these two, is the question.
 constexpr GpuRates kRates[] = {
     {.name = "g71",
      .compiler = "g71",
@@ -140,7 +144,7 @@ constexpr GpuRates kRates[] = {
      .megahertz = 545.0, // 599 where it is cool enough (UploadVR, Quest 3's GPU clock)
      .cores = 6,
      .issueSlots = 1536.0,
-     .issueSlotsHigh = 2560.0, // 3.5 TFLOPS at 680 MHz, as claimed of the Snapdragon 8 Gen 2
+     .issueSlotsHigh = 2560.0, // 3.7 TFLOPS at 719 MHz (primua.com, Adreno 740)
      .texels = 6 * 12.0,
      .fragments = 6 * 8.0,
      .pixels = 6 * 8.0,

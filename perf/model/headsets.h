@@ -16,7 +16,10 @@ struct Headset {
 inline constexpr double kHeadsetRates[] = {72.0, 90.0};
 
 inline constexpr Headset kHeadsets[] = {
-    {"Quest 2", "adreno650", {1440, 1584}, "Meta's default eye buffer, as reported by OVR Metrics"},
+    {"Quest 2",
+     "adreno650",
+     {1440, 1584},
+     "the default as commonly reported; no document of Meta's was at hand"},
     {"Quest 3", "adreno740", {1680, 1760}, "github.com/StereoKit/StereoKit/discussions/926"},
     {"Galaxy S8", "g71", {1480, 1440}, "the core paper's phone: Tukora 2020, section 3"},
 };
