@@ -10,8 +10,8 @@ protected:
     /// Something soft in the middle, nothing at the faces.
     Scene blob(Classification classification) {
         const Volume volume = makeVolume({30, 26, 28}, VoxelType::U8, [](glm::ivec3 v) {
-            const double r = glm::distance(glm::dvec3(v), glm::dvec3(15.0, 12.0, 14.0));
-            return std::max(0.0, 240.0 - 30.0 * r) + (v.x * 7 + v.y * 3 + v.z) % 5;
+            const double r = glm::distance(glm::dvec3(v), glm::dvec3(15.0, 13.0, 14.0));
+            return std::max(0.0, 240.0 - 40.0 * r) + (v.x * 7 + v.y * 3 + v.z) % 5;
         });
         const TransferFunction tf{.points = {{20.0, glm::dvec3(1.0, 0.3, 0.1), 0.0},
                                              {230.0, glm::dvec3(0.4, 1.0, 0.9), 0.6}}};
