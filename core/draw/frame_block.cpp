@@ -40,11 +40,10 @@ constexpr double kInside = 1.0 - 1e-6;
 void fillSkip(FrameBlock& block, const BuiltSkip& skip, glm::ivec3 dims, double spacingMm) {
     const int edge = skip.options.blockEdgeVoxels;
     const glm::ivec3 blocks = blocksOf(dims, edge);
-    block.skipMap =
-        packed(glm::dvec3(dims) / double(edge) * kInside,
-               skip.lengths && skip.lengths->quantumMm > 0.0
-                   ? spacingMm / (skip.lengths->quantumMm * kBelow)
-                   : 0.0);
+    block.skipMap = packed(glm::dvec3(dims) / double(edge) * kInside,
+                           skip.lengths && skip.lengths->quantumMm > 0.0
+                               ? spacingMm / (skip.lengths->quantumMm * kBelow)
+                               : 0.0);
     const bool topDown = skip.options.traversal == Traversal::TopDown;
     block.skipBlocks = glm::ivec4(blocks - 1, topDown ? kToInitialLevel : 1);
     if (skip.octree) {
@@ -74,8 +73,9 @@ void fillShading(FrameBlock& block, const ShadingParameters& shading,
         glm::dvec4(shading.ambient, shading.diffuse, shading.specular, shading.shininess));
 }
 
-/// distance^2 - (depth * length)^2 over the spacing, where the length is of a ray per unit of depth:
-/// |centre|^2 - |tangent(p) depth|^2 across the view's axis, as (centre - place) . (centre + place).
+/// distance^2 - (depth * length)^2 over the spacing, where the length is of a ray per unit of
+/// depth: |centre|^2 - |tangent(p) depth|^2 across the view's axis, as (centre - place) . (centre +
+/// place).
 void fillShells(FrameBlock& block, const RayFrame& f) {
     const double depth = f.sphereCentre.z;
     const glm::dvec2 centre(f.sphereCentre);
@@ -83,8 +83,8 @@ void fillShells(FrameBlock& block, const RayFrame& f) {
     const glm::dvec2 perPixel = f.tangentPerPixel * depth;
     const double at0 = glm::dot(centre - place0, centre + place0);
     block.sphere = glm::vec4(glm::dvec4(at0 / f.spacing, 0.0, depth, f.sphereDistance));
-    block.missed = glm::vec4(
-        glm::dvec4(-2.0 * place0 * perPixel, -perPixel * perPixel) / f.spacing);
+    block.missed =
+        glm::vec4(glm::dvec4(-2.0 * place0 * perPixel, -perPixel * perPixel) / f.spacing);
 }
 
 /// What makes a texel's alpha a number of halvings (or of reference lengths), for one spacing.
@@ -108,7 +108,8 @@ glm::vec4 tableMap(const Scene& scene, TableRead read, int width) {
 
 } // namespace
 
-FrameBlock makeFrameBlock(const RayFrame& f, const Scene& scene, const FramePlan& plan) {
+FrameBlock makeFrameBlock(const RayFrame& f, const Scene& scene, const FramePlan& plan,
+                          int tableWidth) {
     FrameBlock block{};
     block.centre0 = packed(f.centre0, f.lattice.total / 2.0);
     block.centreX = packed(f.centreX, (f.nearDepth - f.sphereCentre.z) / f.spacing);
@@ -121,7 +122,7 @@ FrameBlock makeFrameBlock(const RayFrame& f, const Scene& scene, const FramePlan
     block.viewport = glm::vec4(
         glm::dvec4(f.viewportCentre, plan.layersPerPlane,
                    plan.variant.fetchesTarget ? saturatedAlpha(plan) : plan.terminationAlpha));
-    block.tableMap = tableMap(scene, plan.variant.table, scene.table().texels.size());
+    block.tableMap = tableMap(scene, plan.variant.table, tableWidth);
     if (const PreintegratedTable* table = scene.preintegrated()) {
         const int last = table->size() - 1;
         block.tableEnds = {table->at(0, 0), table->at(last, last)};

@@ -28,7 +28,9 @@ static_assert(sizeof(FrameBlock::octreeLevels) == kMaxOctreeLevels * sizeof(glm:
 
 class Scene;
 
-/// Rounds a view's float64 coefficients to what the shaders take. Pure.
-FrameBlock makeFrameBlock(const RayFrame& frame, const Scene& scene, const FramePlan& plan);
+/// Rounds a view's float64 coefficients to what the shaders take. `tableWidth`: texels of a row of
+/// the table's texture. Pure.
+FrameBlock makeFrameBlock(const RayFrame& frame, const Scene& scene, const FramePlan& plan,
+                          int tableWidth);
 
 } // namespace slabcast

@@ -73,8 +73,8 @@ Result<void> Renderer::State::needMarks(const FramePlan& plan, gl::StateScope& s
     return marks.create();
 }
 
-void Renderer::State::stage(std::size_t index, const Scene& scene, const FramePlan& plan,
-                            const View& view, const Viewport& viewport) {
+ShaderVariant Renderer::State::stage(std::size_t index, const Scene& scene, const FramePlan& plan,
+                                     const View& view, const Viewport& viewport) {
     const RayFrame frame = makeRayFrame(view, viewport, scene.geometry(), plan.lattice);
     if (plan.tighten) {
         tightStack(frame, view.frustum, view.viewFromModel * scene.geometry().modelFromUvw(),
@@ -82,7 +82,9 @@ void Renderer::State::stage(std::size_t index, const Scene& scene, const FramePl
     } else {
         sphereStack(frame, view.frustum, plan.planes, plan.layersPerPlane, stack);
     }
-    drawer.stage(index, makeFrameBlock(frame, scene, plan), stack, view.frustum, plan.tighten);
+    drawer.stage(index, makeFrameBlock(frame, scene, plan, textures.tableWidth()), stack,
+                 view.frustum, plan.tighten);
+    return variantFor(plan, frame, view.frustum);
 }
 
 Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -184,7 +186,8 @@ Result<void> Renderer::prepare(const Scene& scene, const FramePlan& plan,
     return state_->createFixed(scope)
         .and_then([&] { return state_->textures.update(scene, plan, state_->caps, scope); })
         .and_then([&] { return state_->needMarks(plan, scope); })
-        .and_then([&] { return state_->needProgram(plan.variant, scope); })
+        .and_then([&] { return state_->needProgram(cutVariant(plan), scope); })
+        .and_then([&](const gl::Program*) { return state_->needProgram(plan.variant, scope); })
         .and_then(
             [&](const gl::Program*) { return state_->prepareViews(scene, plan, views, scope); });
 }
@@ -193,6 +196,7 @@ Result<void> Renderer::State::prepareViews(const Scene& scene, const FramePlan& 
                                            std::span<const ViewTarget> views,
                                            gl::StateScope& state) {
     drawer.reserve(views.size());
+    drawing.resize(std::max(drawing.size(), views.size()));
     stack.outlines.reserve(static_cast<std::size_t>(plan.planes));
     double longest = 0.0;
     glm::ivec2 layerSize(0);
@@ -327,8 +331,9 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
     if (plan.drawsNothing) {
         return {};
     }
-    const gl::Program* program = state_->programs.find(plan.variant);
-    if (program == nullptr || !state_->textures.serve(scene, plan)) {
+    if (state_->programs.find(plan.variant) == nullptr ||
+        state_->programs.find(cutVariant(plan)) == nullptr ||
+        !state_->textures.serve(scene, plan)) {
         return fail(ErrorCode::InvalidArgument,
                     "scene and plan were not prepared: call prepare() with them first");
     }
@@ -346,8 +351,8 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
         const Viewport& v = target.viewport;
         if (!isEmpty(v)) {
             const bool layered = needsLayer(plan, target.encoding);
-            state_->stage(i, scene, plan, target.view,
-                          layered ? Viewport{0, 0, v.width, v.height} : v);
+            state_->drawing[i] = state_->programs.find(state_->stage(
+                i, scene, plan, target.view, layered ? Viewport{0, 0, v.width, v.height} : v));
         }
     }
     gl::StateScope scope(state_->hostState);
@@ -356,23 +361,23 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
     BlendSwitch blending(planeBlending(plan));
     state_->textures.bind(scene.skip());
     state_->drawer.useVertices();
-    bool inUse = false; // the program, and the blending, of planes
+    const gl::Program* inUse = nullptr; // and the blending of planes
     for (std::size_t i = 0; i < views.size(); ++i) {
         const ViewTarget& target = views[i];
         if (isEmpty(target.viewport)) {
             continue;
         }
         if (needsLayer(plan, target.encoding)) {
-            state_->drawLayer(i, target, plan, *program, blending);
-            inUse = false;
+            state_->drawLayer(i, target, plan, *state_->drawing[i], blending);
+            inUse = nullptr;
             continue;
         }
-        if (!inUse) {
-            program->use();
+        if (inUse != state_->drawing[i]) {
+            inUse = state_->drawing[i];
+            inUse->use();
             blending.to(planeBlending(plan));
-            inUse = true;
         }
-        state_->drawDirectly(i, target, plan, *program);
+        state_->drawDirectly(i, target, plan, *inUse);
     }
     return {};
 }

@@ -35,7 +35,8 @@ struct Renderer::State {
     HostState hostState = HostState::Restore;
     ProgramCache programs;
     BoxCache boxes;
-    ProxyStack stack; // of the view that is staged: room
+    ProxyStack stack;                        // of the view that is staged: room
+    std::vector<const gl::Program*> drawing; // by view
 
     Result<void> createFixed(gl::StateScope& state);
     Result<const gl::Program*> needProgram(const ShaderVariant& variant, gl::StateScope& state);
@@ -45,9 +46,9 @@ struct Renderer::State {
                               std::span<const ViewTarget> views, gl::StateScope& state);
     /// Whether prepareViews() was called for views as large and wide.
     bool servesView(const Scene& scene, const FramePlan& plan, const ViewTarget& target) const;
-    /// Stages a view's planes.
-    void stage(std::size_t index, const Scene& scene, const FramePlan& plan, const View& view,
-               const Viewport& viewport);
+    /// Stages a view's planes. Returns the variant that draws it.
+    ShaderVariant stage(std::size_t index, const Scene& scene, const FramePlan& plan,
+                        const View& view, const Viewport& viewport);
     Result<void> resizeLayer(const Scene& scene, const FramePlan& plan, glm::ivec2 size,
                              gl::StateScope& state);
     void drawRun(const gl::ColorTargets& into, const FramePlan& plan, glm::ivec2 size,

@@ -18,14 +18,7 @@ Result<void> Renderer::State::count(const Scene& scene, const FramePlan& plan,
     const glm::ivec2 size(v.width, v.height);
     const bool marked = plan.planesPerMark > 0;
     const bool needsPicture = marked || plan.variant.fetchesTarget;
-    ShaderVariant counting = plan.variant;
-    counting.counts = true;
     state.touch();
-    const Result<const gl::Program*> counts = programs.need(counting);
-    const Result<const gl::Program*> colours = needsPicture ? programs.need(plan.variant) : counts;
-    if (!counts || !colours) {
-        return tl::unexpected(counts ? colours.error() : counts.error());
-    }
     const std::array formats{static_cast<GLenum>(GL_RGBA32F), static_cast<GLenum>(GL_RGBA32F),
                              static_cast<GLenum>(GL_DEPTH_COMPONENT16)};
     Result<void> ready =
@@ -40,7 +33,14 @@ Result<void> Renderer::State::count(const Scene& scene, const FramePlan& plan,
     if (!ready) {
         return ready;
     }
-    stage(0, scene, plan, target.view, {0, 0, v.width, v.height});
+    const ShaderVariant drawn = stage(0, scene, plan, target.view, {0, 0, v.width, v.height});
+    ShaderVariant counting = drawn;
+    counting.counts = true;
+    const Result<const gl::Program*> counts = programs.need(counting);
+    const Result<const gl::Program*> colours = needsPicture ? programs.need(drawn) : counts;
+    if (!counts || !colours) {
+        return tl::unexpected(counts ? colours.error() : counts.error());
+    }
     drawer.upload(1);
     BlendSwitch blending(planeBlending(plan)); // before what clears
     counters.begin();

@@ -40,6 +40,18 @@ double saturatedAlpha(const FramePlan& plan) {
     return plan.terminationAlpha - halfStepBelowOne(plan.target);
 }
 
+ShaderVariant cutVariant(const FramePlan& plan) {
+    ShaderVariant variant = plan.variant;
+    variant.interval = Interval::Box;
+    return variant;
+}
+
+ShaderVariant variantFor(const FramePlan& plan, const RayFrame& frame, const Frustum& frustum) {
+    return plan.variant.interval == Interval::Box || liesBeyondNear(frame, frustum)
+               ? plan.variant
+               : cutVariant(plan);
+}
+
 std::string name(const Ratio& ratio) {
     return std::to_string(ratio.planes) + "x" + std::to_string(ratio.layersPerPlane) +
            (ratio.form == SegmentForm::Unrolled ? " unrolled" : " loop");

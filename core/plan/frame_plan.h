@@ -26,8 +26,12 @@ struct SceneFacts {
     double occupiedFraction = 1.0; // of its blocks or leaves
     bool oneMaterial = false;      // the transfer function is constant over the data
     double maxExtinctionPerMm = 0.0;
-    double visibleColorRange = 1.0; // of any channel
-    bool wideTable = false;         // extinction spans more than fp16 keeps
+    double visibleColorRange = 1.0;           // of any channel
+    bool wideTable = false;                   // extinction spans more than fp16 keeps
+    bool filtersTable = false;                // the device's filter may read the table
+    std::optional<double> classifiedLengthMm; // of a layer, in pre-classified texels
+    bool facesAreClear = false;               // nothing visible is in a block at the volume's faces
+    bool isEdited = false;                    // its look may be another one in the next frame
 };
 
 /// One way to deal the layers out to planes.
@@ -73,6 +77,12 @@ struct FramePlan {
 
     bool operator==(const FramePlan& other) const;
 };
+
+/// The variant that draws a view of the plan: its own, or where that cuts no stay and the view's
+/// near plane or eye is among the layers, the one that does.
+ShaderVariant variantFor(const FramePlan& plan, const RayFrame& frame, const Frustum& frustum);
+/// The one that cuts.
+ShaderVariant cutVariant(const FramePlan& plan);
 
 /// Stored alpha above which a pixel of the plan's layer counts as having passed the termination
 /// opacity: a stored value stands for all that lie within half a step of it.

@@ -17,6 +17,8 @@ enum class ReasonId : std::uint8_t {
     Layers,
     PlanarLattice,
     ShellsLattice,
+    PlanarLatticeHere,
+    ShellsLatticeHere,
     Jitter,
     RatioAsked,
     RatioOfFewerPlanes,
@@ -26,6 +28,10 @@ enum class ReasonId : std::uint8_t {
     ClassificationUnlit,
     ClassificationLit,
     ClassificationBaked,
+    LengthsBaked,
+    LengthsPerRay,
+    TableFiltered,
+    TableFetched,
     WideTableWarning,
     OneMaterial,
     ExactField,
@@ -57,6 +63,12 @@ enum class ReasonId : std::uint8_t {
     TerminationOfSegments,
     TightPlanes,
     SphereOutlines,
+    NoCut,
+    CutWhileEdited,
+    CutInWideOutlines,
+    CutAtFaces,
+    CutSparesFetches,
+    CutAtPlane,
     DrawsNothing,
 };
 
@@ -69,7 +81,7 @@ struct Reason {
 };
 
 /// More than any plan has.
-inline constexpr std::size_t kMostReasons = 20;
+inline constexpr std::size_t kMostReasons = 24;
 using Reasons = ShortList<Reason, kMostReasons>;
 
 /// The choice as `--explain` and reports name it, and one line that says why.

@@ -30,7 +30,7 @@ struct Settings {
     std::optional<SkipStructure> skip;
     SkipOptions skipOptions; // of the structure; its kind is what is built where `skip` is unset
     SkipBuilder skipBuilder = SkipBuilder::Auto;
-    LatticeKind lattice = LatticeKind::Planar;
+    std::optional<LatticeKind> lattice;
     bool jitter = false;             // moves every ray's layers by up to half a layer
     double layerSpacingVoxels = 1.0; // of the smallest voxel edge
     std::optional<int> totalLayers;  // instead of the spacing

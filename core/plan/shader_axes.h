@@ -154,9 +154,7 @@ inline constexpr AxisValue kTable[] = {
 
 inline constexpr AxisValue kLengths[] = {
     {.name = "per ray", .files = {{"LENGTHS_FILE", "segment/lengths/per_ray.glsl"}}},
-    {.name = "baked",
-     .suffix = "+baked",
-     .files = {{"LENGTHS_FILE", "BAKED_FILE"}}},
+    {.name = "baked", .suffix = "+baked", .files = {{"LENGTHS_FILE", "BAKED_FILE"}}},
 };
 
 inline constexpr AxisValue kInterval[] = {
@@ -221,7 +219,7 @@ inline constexpr AxisValue kForm[] = {
      .files = {{"FORM_FILE", "segment/form/loop.glsl"},
                {"BAKED_FILE", "segment/lengths/baked.glsl"}},
      .layersPerGroup = 8},
-#define SLABCAST_UNROLLED(n, group, ends)                                                             \
+#define SLABCAST_UNROLLED(n, group, ends)                                                          \
     {                                                                                              \
         .name = #n " layers", .suffix = "/unroll" #n,                                              \
         .files = {{"FORM_FILE", "segment/form/unrolled.glsl"}, {"BAKED_FILE", ends}},              \

@@ -64,10 +64,12 @@ Result<Device> Device::open(gl::GetProc getProc, DeviceOptions options) {
         return tl::unexpected(caps.error());
     }
     std::vector<TexelFormatTest> formats = selfTestTexelFormats(*caps);
-    return Device(std::move(*caps), std::move(formats), std::move(options));
+    TableFilterTest tableFilter = selfTestTableFilter();
+    return Device(std::move(*caps), std::move(formats), std::move(options), std::move(tableFilter));
 }
 
-Device::Device(gl::Caps caps, std::vector<TexelFormatTest> formats, DeviceOptions options) {
+Device::Device(gl::Caps caps, std::vector<TexelFormatTest> formats, DeviceOptions options,
+               TableFilterTest tableFilter) {
     const Quirks quirks = options.quirks.value_or(knownQuirks(caps));
     applyQuirks(quirks, caps, formats);
     if (options.contract != nullptr) {
@@ -76,8 +78,9 @@ Device::Device(gl::Caps caps, std::vector<TexelFormatTest> formats, DeviceOption
     if (options.executor != nullptr) {
         setExecutor(options.executor);
     }
-    state_ = std::make_shared<const State>(
-        State{std::move(caps), std::move(formats), quirks, std::move(options.log)});
+    state_ = std::make_shared<const State>(State{std::move(caps), std::move(formats),
+                                                 std::move(tableFilter), quirks,
+                                                 std::move(options.log)});
 }
 
 TextureChoice Device::texturesFor(VoxelType type, const VolumeStatistics& statistics, bool exact,
@@ -86,6 +89,7 @@ TextureChoice Device::texturesFor(VoxelType type, const VolumeStatistics& statis
     choice.texels =
         chooseTexelFormat(type, statistics, exact, longestStep, formats(), &choice.reason);
     choice.filterErrorOfFullScale = filterErrorOfFullScale(choice.texels);
+    choice.filtersTable = tableFilter().usable && !exact;
     choice.maxTableSize = static_cast<int>(std::min(kMaxTableSize, caps().maxTextureSize));
     return choice;
 }

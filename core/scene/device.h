@@ -34,6 +34,7 @@ struct TextureChoice {
     TexelFormat texels = TexelFormat::R8;
     double filterErrorOfFullScale = 0.0; // what the device's filter may add to a sample
     int maxTableSize = 4096;             // texels of a transfer table, at most
+    bool filtersTable = false;           // the device's filter may read the table
     std::string reason;                  // of the format: one line
 };
 
@@ -71,12 +72,15 @@ public:
     static Result<Device> open(gl::GetProc getProc, DeviceOptions options = {});
 
     /// Of facts that were found elsewhere; calls no GL.
-    Device(gl::Caps caps, std::vector<TexelFormatTest> formats, DeviceOptions options = {});
+    Device(gl::Caps caps, std::vector<TexelFormatTest> formats, DeviceOptions options = {},
+           TableFilterTest tableFilter = {});
 
     const gl::Caps& caps() const { return state_->caps; }
     const Quirks& quirks() const { return state_->quirks; }
     /// One entry per texel format: usable or not, and how wrong its filter is.
     std::span<const TexelFormatTest> formats() const { return state_->formats; }
+    /// Whether the device's filter may read a transfer function's table, and how wrong it is.
+    const TableFilterTest& tableFilter() const { return state_->tableFilter; }
 
     /// The format for such voxels, with what exact skipping must know of its filter.
     /// `exact`: texels are interpolated in the shader, in float32, whatever the device filters; so
@@ -94,6 +98,7 @@ private:
     struct State {
         gl::Caps caps;
         std::vector<TexelFormatTest> formats;
+        TableFilterTest tableFilter;
         Quirks quirks;
         LogHook log;
     };

@@ -31,11 +31,15 @@ Result<void> keep(gl::Texture& slot, Result<gl::Texture> made) {
 
 GpuScene::Sources GpuScene::needs(const Scene& scene, const FramePlan& plan) {
     if (plan.drawsNothing) { // for now, where the TF may be another one in the next frame
-        return {scene.live() != nullptr ? scene.texelsGeneration() : 0, 0};
+        return {scene.live() != nullptr ? scene.texelsGeneration() : 0, 0, {}};
     }
     const int look = scene.lookGeneration();
     const bool pre = plan.variant.classification == Classification::Pre;
-    return {pre ? look : scene.texelsGeneration(), pre ? 0 : look};
+    const bool post = plan.variant.classification == Classification::Post;
+    const bool baked = post && plan.variant.lengths == Lengths::Baked;
+    return {pre ? look : scene.texelsGeneration(),
+            pre ? 0 : look,
+            {plan.variant.table == TableRead::Filtered, baked ? plan.lattice.spacingMm : 0.0}};
 }
 
 GpuScene::NeededSkips GpuScene::neededSkips(const Scene& scene, const FramePlan& plan) {
@@ -85,7 +89,7 @@ Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const g
     const Sources needed = needs(scene, plan);
     const bool pre = plan.variant.classification == Classification::Pre;
     return updateVolume(scene, pre, needed.volume, caps, state)
-        .and_then([&] { return updateTable(scene, needed.table, caps, state); })
+        .and_then([&] { return updateTable(scene, needed, caps, state); })
         .and_then([&] { return updateSkips(scene, plan, caps, state); });
 }
 
@@ -174,20 +178,21 @@ Result<void> GpuScene::needGrid(const BuiltSkip& skip, std::int64_t mostBytes,
     return {};
 }
 
-Result<void> GpuScene::updateTable(const Scene& scene, int generation, const gl::Caps& caps,
+Result<void> GpuScene::updateTable(const Scene& scene, const Sources& needed, const gl::Caps& caps,
                                    gl::StateScope& state) {
-    if (held_.table == generation) {
+    if (held_.table == needed.table && held_.tableContent == needed.tableContent) {
         return {};
     }
     held_.table = 0;
-    if (generation == 0) {
+    held_.tableContent = needed.tableContent;
+    if (needed.table == 0) {
         if (scene.live() == nullptr) { // else the next TF needs one
             table_.release();
         }
         return {};
     }
     state.touch();
-    return table_.fill(scene, caps).map([&] { held_.table = generation; });
+    return table_.fill(scene, needed.tableContent, caps).map([&] { held_.table = needed.table; });
 }
 
 Result<void> GpuScene::updateVolume(const Scene& scene, bool pre, int generation,

@@ -35,6 +35,7 @@ public:
 
     /// Each to its unit of core/plan/shader_resources.h; the skip structure where it was uploaded.
     void bind(const BuiltSkip& skip) const;
+    int tableWidth() const { return table_.width(); }
 
     std::int64_t volumeBytes() const { return volumeBytes_; }
     std::int64_t skipBytes() const; // of all structures, and of spare ones
@@ -48,6 +49,7 @@ private:
     struct Sources {
         int volume = 0;
         int table = 0;
+        TableTexture::Content tableContent;
         bool operator==(const Sources&) const = default;
     };
     struct HeldSkip {
@@ -68,7 +70,7 @@ private:
 
     Result<void> updateVolume(const Scene& scene, bool pre, int generation, const gl::Caps& caps,
                               gl::StateScope& state);
-    Result<void> updateTable(const Scene& scene, int generation, const gl::Caps& caps,
+    Result<void> updateTable(const Scene& scene, const Sources& needed, const gl::Caps& caps,
                              gl::StateScope& state);
     Result<void> updateSkips(const Scene& scene, const FramePlan& plan, const gl::Caps& caps,
                              gl::StateScope& state);

@@ -57,6 +57,7 @@ struct Scene::State {
     std::shared_ptr<const Texels> texels;
     double filterErrorSampled = 0.0;
     int maxTableSize = 0;
+    bool filtersTable = false;
     std::shared_ptr<const TexelCodes> codes; // made when the first skip structure is
     Look look;
     std::optional<Needs> provided; // but for the structure
@@ -110,6 +111,7 @@ Result<Scene> Scene::create(Volume volume, const VolumeStatistics& statistics,
     state->lookGeneration = nextGeneration();
     state->filterErrorSampled = choice.filterErrorOfFullScale * fullScaleSampled(choice.texels);
     state->maxTableSize = choice.maxTableSize;
+    state->filtersTable = choice.filtersTable;
     return Scene(std::move(state));
 }
 
@@ -367,6 +369,8 @@ SceneFacts Scene::facts() const {
     facts.exactField = isExact(state_->texels->format);
     facts.skip = skip().options;
     facts.occupiedFraction = skip().occupiedFraction;
+    facts.facesAreClear = skip().facesAreClear;
+    facts.isEdited = state_->live.has_value();
     if (!state_->provided) {
         return facts;
     }
@@ -378,6 +382,10 @@ SceneFacts Scene::facts() const {
                                             static_cast<double>(texel.a) * table().extinctionPerMm);
     }
     facts.wideTable = state_->table.wide;
+    facts.filtersTable = state_->filtersTable && !state_->table.wide;
+    if (state_->classified) {
+        facts.classifiedLengthMm = state_->classified->referenceLengthMm;
+    }
     facts.visibleColorRange = visibleColorRange(state_->look.tf, state_->statistics.min,
                                                 state_->statistics.max, state_->provided->space);
     facts.anythingVisible =

@@ -13,10 +13,11 @@ bool alike(const TexelLayout& a, const TexelLayout& b) {
     return a.internalFormat == b.internalFormat && a.filter == b.filter;
 }
 
-/// A row may be longer than its table: it is fetched texel by texel. A square is filtered, by
-/// coordinates that count from its edges.
-bool holds(glm::ivec2 texture, glm::ivec2 table) {
-    return table.y == 1 ? texture.y == 1 && texture.x >= table.x : texture == table;
+/// A row that is fetched texel by texel may be longer than its table. One that is filtered, and a
+/// square, are read by coordinates that count from their edges.
+bool holds(glm::ivec2 texture, const TableTexels& table) {
+    const bool fetched = table.layout.filter == GL_NEAREST;
+    return fetched ? texture.y == 1 && texture.x >= table.size.x : texture == table.size;
 }
 
 /// So long that tables which grow from edit to edit seldom need another.
@@ -25,26 +26,45 @@ glm::ivec2 withRoom(glm::ivec2 table, const gl::Caps& caps) {
     return table.y == 1 ? glm::ivec2(int(std::min(length, caps.maxTextureSize)), 1) : table;
 }
 
-TableTexels tableTexelsOf(const Scene& scene) {
-    const PreintegratedTable* square = scene.preintegrated();
-    return square != nullptr ? squareTableTexels(square->texels)
-                             : tableTexels(scene.table().texels, scene.table().wide);
-}
-
 } // namespace
 
-Result<void> TableTexture::fill(const Scene& scene, const gl::Caps& caps) {
+/// Texels as they are uploaded. A filtered row is filled to its end with the last texel, which
+/// holds for all values beyond.
+TableTexels TableTexture::texelsOf(const Scene& scene, const Content& content,
+                                   const gl::Caps& caps) {
+    if (const PreintegratedTable* square = scene.preintegrated()) {
+        return squareTableTexels(square->texels);
+    }
+    const TransferTable& table = scene.table();
+    if (content == Content{}) {
+        return tableTexels(table.texels, table.wide);
+    }
+    row_ = table.texels;
+    if (content.bakedLengthMm > 0.0) {
+        bakeLength(row_, table.extinctionPerMm * content.bakedLengthMm);
+    }
+    if (!content.filtered) {
+        return tableTexels(row_, table.wide);
+    }
+    const glm::ivec2 size(static_cast<int>(row_.size()), 1);
+    if (scene.live() != nullptr) {
+        row_.resize(static_cast<std::size_t>(withRoom(size, caps).x), row_.back());
+    }
+    return filteredTableTexels(row_);
+}
+
+Result<void> TableTexture::fill(const Scene& scene, const Content& content, const gl::Caps& caps) {
     const bool edited = scene.live() != nullptr;
     if (!edited) {
         release(); // before the next is allocated
     }
-    const TableTexels table = tableTexelsOf(scene);
+    const TableTexels table = texelsOf(scene, content, caps);
     if (Result<void> fits = checkTable(table, caps); !fits) {
         return fits;
     }
     const std::size_t next = edited ? (current_ + 1) % kTurns : 0;
     Slot& slot = slots_[next];
-    if (!slot.texture || !alike(slot.layout, table.layout) || !holds(slot.size, table.size)) {
+    if (!slot.texture || !alike(slot.layout, table.layout) || !holds(slot.size, table)) {
         slot.texture.release();
         const glm::ivec2 size = edited ? withRoom(table.size, caps) : table.size;
         Result<gl::Texture> made = allocate2d("transfer table", table.layout, size);

@@ -50,6 +50,23 @@ TexelFormatTest judgeTexelFormat(TexelFormat format, std::span<const FilterSampl
 /// once per device. Tested by: texel_format_gl_test.cpp
 std::vector<TexelFormatTest> selfTestTexelFormats(const gl::Caps& caps);
 
+/// What drawing from a tiny RGBA16F table and reading the result back found out about the device's
+/// filter.
+struct TableFilterTest {
+    bool usable = false;
+    double maxError = 0.0; // from exact interpolation, relative to the difference of the two texels
+    std::string reason{};  // one line, for people
+};
+
+/// Usable where what lies between two zeros is exactly zero, and every sample stays within 1/256 of
+/// the difference of its texels (weights of eight bits, cut off) and one rounding step of fp16.
+/// Pure. Tested by: table_filter_test.cpp
+TableFilterTest judgeTableFilter(std::span<const FilterSample> samples);
+
+/// Saves and restores the GL state. Cost: one small draw, once per device.
+/// Tested by: texel_format_gl_test.cpp
+TableFilterTest selfTestTableFilter();
+
 /// The longest step between the values of texels that shows what is there: a quarter of what the
 /// transfer function makes visible, and a 32nd of where nearly all voxels lie; infinite where
 /// neither is bounded. Longer ones miss a thin material, or draw terraces. Pure.

@@ -60,6 +60,12 @@ TableTexels tableTexels(const std::vector<glm::vec4>& texels, bool wide) {
     return {texels.data(), {static_cast<int>(texels.size()), 1}, layout};
 }
 
+TableTexels filteredTableTexels(const std::vector<glm::vec4>& texels) {
+    return {texels.data(),
+            {static_cast<int>(texels.size()), 1},
+            {GL_RGBA16F, GL_RGBA, GL_FLOAT, GL_LINEAR, 8}};
+}
+
 TableTexels squareTableTexels(const std::vector<glm::u16vec4>& halfs) {
     const int edge = static_cast<int>(std::lround(std::sqrt(static_cast<double>(halfs.size()))));
     SLABCAST_EXPECTS(std::int64_t(edge) * edge == static_cast<std::int64_t>(halfs.size()), edge);

@@ -33,6 +33,8 @@ struct TableTexels {
 
 /// By one value: RGBA16F, or RGBA32F where `wide`; one row, for texelFetch.
 TableTexels tableTexels(const std::vector<glm::vec4>& texels, bool wide);
+/// For the device's filter.
+TableTexels filteredTableTexels(const std::vector<glm::vec4>& texels);
 /// By both ends of an interval: RGBA16F, as wide as high, filtered.
 TableTexels squareTableTexels(const std::vector<glm::u16vec4>& halfs);
 /// Fails: InvalidArgument (empty, or longer than the device takes).

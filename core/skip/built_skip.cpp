@@ -24,12 +24,35 @@ double fractionOf(std::int64_t occupied, glm::ivec3 blocks) {
     return static_cast<double>(occupied) / (n.x * n.y * n.z);
 }
 
+bool isAtFace(glm::ivec3 place, glm::ivec3 count) {
+    return glm::any(glm::equal(place, glm::ivec3(0))) || glm::any(glm::equal(place, count - 1));
+}
+
+/// Whether all blocks at the volume's faces are free. Cost: O(those).
+bool facesAreClear(const FreeLengths& grid) {
+    const glm::ivec3 n = grid.blocks;
+    glm::ivec3 at(0);
+    for (at.z = 0; at.z < n.z; ++at.z) {
+        for (at.y = 0; at.y < n.y; ++at.y) {
+            const bool inner = !isAtFace({1, at.y, at.z}, {3, n.y, n.z});
+            for (at.x = 0; at.x < n.x; at.x += inner ? std::max(n.x - 1, 1) : 1) {
+                const std::int64_t row = std::int64_t(at.z) * n.y + at.y;
+                if (grid.counts[static_cast<std::size_t>(row * n.x + at.x)] == 0) {
+                    return false;
+                }
+            }
+        }
+    }
+    return true;
+}
+
 // Each takes one kind of data into its place.
 
 void keep(BuiltSkip& /*skip*/, std::monostate /*nothing*/) {}
 
 void keep(BuiltSkip& skip, std::shared_ptr<const FreeLengths> grid) {
     skip.occupiedFraction = fractionOf(grid->occupiedBlocks, grid->blocks);
+    skip.facesAreClear = facesAreClear(*grid);
     skip.lengths = std::move(grid);
     skip.generation = nextGeneration();
 }
@@ -114,9 +137,16 @@ int countedLevel(const Octree& octree) {
     return level;
 }
 
-double visibleFraction(const BuiltSkip& skip, int level) {
-    return fractionOf(countVisibleNodes(*skip.octree, skip.test, level),
-                      skip.octree->levels[level].nodes);
+/// How many nodes of a level are visible, and whether any of them is at a face.
+void countVisible(BuiltSkip& skip, int level) {
+    const glm::ivec3 nodes = skip.octree->levels[level].nodes;
+    std::int64_t visible = 0;
+    skip.facesAreClear = true;
+    forVisibleNodes(*skip.octree, skip.test, level, [&](glm::ivec3 node) {
+        ++visible;
+        skip.facesAreClear &= !isAtFace(node, nodes);
+    });
+    skip.occupiedFraction = fractionOf(visible, nodes);
 }
 
 /// What a TF changes: the merged map, or the test of nodes.
@@ -126,7 +156,7 @@ void apply(BuiltSkip& skip, const CellVisibility& visibility) {
         keep(skip, merged(*skip.maps, visibleBins(skip.maps->bins, visibility)));
     } else if (skip.octree) {
         skip.test = testOf(skip, visibility);
-        skip.occupiedFraction = visibleFraction(skip, countedLevel(*skip.octree));
+        countVisible(skip, countedLevel(*skip.octree));
     }
     skip.updateMs = watch.ms();
 }

@@ -35,6 +35,7 @@ struct BuiltSkip {
     NodeTest test;                            // what the TF makes of the octree's nodes
     VisibleValues shown;                      // what a structure of one TF was built for
     double occupiedFraction = 1.0;            // of blocks or leaves
+    bool facesAreClear = false;               // none of those at the volume's faces is occupied
     int generation = 0;                       // of what the texture holds; unique in this process
     bool onGpu = false;                       // where it was built
     double buildMs = 0.0;                     // all that the first TF took

@@ -94,6 +94,10 @@ TransferTable makeTable(const TransferFunction& tf, double dataMin, double dataM
 void makeTable(const TransferFunction& tf, double dataMin, double dataMax, bool integerData,
                CompositingSpace space, int maxSize, TransferTable& table);
 
+/// Turns colour and extinction into premultiplied colour and the opacity of a layer, whose depth is
+/// `depthPerExtinction` times the texel's extinction. What is visible stays visible in fp16.
+void bakeLength(std::vector<glm::vec4>& texels, double depthPerExtinction);
+
 /// Linear texture lookup of the table, as the shader does it, in float64: colour, and extinction in
 /// 1/mm.
 glm::dvec4 lookUp(const TransferTable& table, double value);

@@ -165,6 +165,14 @@ TransferTable makeTable(const TransferFunction& tf, double dataMin, double dataM
     return table;
 }
 
+void bakeLength(std::vector<glm::vec4>& texels, double depthPerExtinction) {
+    for (glm::vec4& texel : texels) {
+        const auto alpha = static_cast<float>(-std::expm1(-texel.a * depthPerExtinction));
+        const float kept = texel.a > 0.0F ? std::max(kSmallestHalf, alpha) : 0.0F;
+        texel = glm::vec4(glm::vec3(texel) * kept, kept);
+    }
+}
+
 glm::dvec4 lookUp(const TransferTable& table, double value) {
     SLABCAST_EXPECTS(table.texels.size() >= 2, table.texels.size());
     const auto last = static_cast<double>(table.texels.size() - 1);

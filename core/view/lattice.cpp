@@ -90,6 +90,18 @@ RayFrame makeRayFrame(const View& view, const Viewport& viewport, const VolumeGe
     return frame;
 }
 
+bool liesBeyondNear(const RayFrame& frame, const Frustum& frustum) {
+    const double layers = frame.lattice.total / 2.0 + (frame.lattice.jittered ? 0.5 : 0.0);
+    const double reach = layers * frame.spacing;
+    if (frame.lattice.kind == LatticeKind::Planar) {
+        return frame.sphereCentre.z - reach >= frame.nearDepth;
+    }
+    const double x = std::max(std::abs(frustum.left), std::abs(frustum.right));
+    const double y = std::max(std::abs(frustum.bottom), std::abs(frustum.top));
+    const double longest = std::sqrt(1.0 + x * x + y * y); // per unit of depth
+    return frame.sphereCentre.z > 0.0 && frame.sphereDistance - reach >= frame.nearDepth * longest;
+}
+
 LatticeRay rayAt(const RayFrame& frame, glm::dvec2 fragCoord) {
     const glm::dvec2 p = fragCoord - frame.viewportCentre;
     const glm::dvec2 tangent = frame.tangent0 + frame.tangentPerPixel * p;

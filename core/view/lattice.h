@@ -58,6 +58,9 @@ struct RayFrame {
 RayFrame makeRayFrame(const View& view, const Viewport& viewport, const VolumeGeometry& geometry,
                       const Lattice& lattice);
 
+/// Whether all layers of all rays lie beyond the eye and the near plane, whatever the volume.
+bool liesBeyondNear(const RayFrame& frame, const Frustum& frustum);
+
 /// One ray in units of layers: at offset o from the lattice's centre it is at centre + o * step
 /// (uvw).
 struct LatticeRay {

@@ -16,5 +16,5 @@ flat in float planeFront; // offset of the plane's first layer from the lattice'
 void main() {
     Ray ray = rayOfFragment(gl_FragCoord.xy);
     Segment segment = segmentOf(ray, planeFront);
-    writeResult(march(ray, segment), segment);
+    writeResult(march(ray, segment), layersOf(segment));
 }

@@ -155,7 +155,7 @@ TEST_F(ViewsTest, TightPlanesChangeNothingAtTheNearPlane) {
         const Picture plain = draw(scene, settings, view, kSize);
         settings.tighten = true;
         EXPECT_EQ(differingPixels(plain, draw(scene, settings, view, kSize)), 0)
-            << k << ", " << name(settings.lattice);
+            << k << ", " << name(*settings.lattice);
     }
 }
 

@@ -14,6 +14,32 @@ ReasonId reasonOf(const Settings& settings) {
                               : ReasonId::ClassificationBaked;
 }
 
+/// Where a layer's opacity is made. Texels are taken as they are where they were made for layers of
+/// this length.
+Lengths lengthsOf(const PlanInput& in, const FramePlan& plan) {
+    if (plan.lattice.kind != LatticeKind::Shells || plan.variant.exactField ||
+        in.settings.classification == Classification::Preintegrated) {
+        return Lengths::PerRay;
+    }
+    if (in.settings.classification == Classification::Post) {
+        return in.facts.wideTable ? Lengths::PerRay : Lengths::Baked;
+    }
+    const bool alike = in.facts.classifiedLengthMm == plan.lattice.spacingMm;
+    return alike ? Lengths::Baked : Lengths::PerRay;
+}
+
+void chooseLengths(const PlanInput& in, FramePlan& plan) {
+    plan.variant.lengths = lengthsOf(in, plan);
+    const bool baked = plan.variant.lengths == Lengths::Baked;
+    because(plan, baked ? ReasonId::LengthsBaked : ReasonId::LengthsPerRay);
+    if (in.settings.classification != Classification::Post) {
+        return;
+    }
+    const bool filters = in.facts.filtersTable && !plan.variant.exactField;
+    plan.variant.table = filters ? TableRead::Filtered : TableRead::Exact;
+    because(plan, filters ? ReasonId::TableFiltered : ReasonId::TableFetched);
+}
+
 } // namespace
 
 Result<void> decideClassification(const PlanInput& in, FramePlan& plan) {
@@ -28,6 +54,7 @@ Result<void> decideClassification(const PlanInput& in, FramePlan& plan) {
     if (facts.wideTable && way == Classification::Preintegrated) {
         because(plan, ReasonId::WideTableWarning);
     }
+    chooseLengths(in, plan);
     if (facts.oneMaterial) {
         because(plan, ReasonId::OneMaterial);
     }

@@ -28,6 +28,7 @@ enum class PlanPart : std::uint8_t {
     Order,
     Termination,
     Outlines,
+    Interval,
     Visibility,
 };
 
@@ -49,6 +50,7 @@ Result<void> decideTarget(const PlanInput& in, FramePlan& plan);
 Result<void> decideOrder(const PlanInput& in, FramePlan& plan);
 Result<void> decideTermination(const PlanInput& in, FramePlan& plan);
 Result<void> decideOutlines(const PlanInput& in, FramePlan& plan);
+Result<void> decideInterval(const PlanInput& in, FramePlan& plan);
 Result<void> decideVisibility(const PlanInput& in, FramePlan& plan);
 
 /// In the order of deciding. Tested by: decisions_test.cpp
@@ -67,6 +69,10 @@ inline constexpr Decision kDecisions[] = {
      {PlanPart::Lattice, PlanPart::Ratio, PlanPart::Order},
      {PlanPart::Termination}},
     {"outlines", decideOutlines, {}, {PlanPart::Outlines}},
+    {"interval",
+     decideInterval,
+     {PlanPart::Lattice, PlanPart::Ratio, PlanPart::Classification, PlanPart::Outlines},
+     {PlanPart::Interval}},
     {"visibility", decideVisibility, {}, {PlanPart::Visibility}},
 };
 

@@ -4,6 +4,6 @@ void countFetches(int n) {}
 void countSkipFetch() {}
 void countLook(bool isFree) {}
 
-void writeResult(vec4 sum, Segment segment) {
+void writeResult(vec4 sum, float layers) {
     colour = sum;
 }

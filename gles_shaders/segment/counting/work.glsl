@@ -13,7 +13,7 @@ void countLook(bool isFree) {
     countedOccupied += isFree ? 0 : 1;
 }
 
-void writeResult(vec4 sum, Segment segment) {
-    work0 = vec4(1, layersOf(segment), countedLayers, countedSkipFetches);
+void writeResult(vec4 sum, float layers) {
+    work0 = vec4(1, layers, countedLayers, countedSkipFetches);
     work1 = vec4(countedFetches, countedLooks, countedOccupied, sum.a);
 }

@@ -61,7 +61,7 @@ float endOfLayers(Segment segment) {
     return segment.exit;
 }
 
-/// Layers that are inside, in whole or in part.
-float layersOf(Segment segment) {
-    return max(ceil(segment.exit) - max(floor(segment.entry), 0.0), 0.0);
+/// Layers of the groups that are inside, in whole or in part.
+float layersInGroups(Segment segment) {
+    return max(ceil(segment.exit / float(GROUP)) * float(GROUP) - firstGroup(segment), 0.0);
 }

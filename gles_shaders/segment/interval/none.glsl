@@ -40,6 +40,6 @@ float firstGroup(Segment segment) {
 float endOfLayers(Segment segment) {
     return viewport.z;
 }
-float layersOf(Segment segment) {
-    return viewport.z;
+float layersInGroups(Segment segment) {
+    return ceil(viewport.z / float(GROUP)) * float(GROUP);
 }

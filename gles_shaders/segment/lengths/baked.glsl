@@ -17,6 +17,11 @@ Segment composited(Segment segment) {
     return wholeLayers(segment);
 }
 
+float layersOf(Segment segment) {
+    return layersInGroups(composited(segment)) + step(0.0, cutAtEntry(segment)) +
+           step(0.0, cutAtExit(segment));
+}
+
 void addCut(inout Sum sum, Ray ray, Segment segment, float k) {
     if (k >= 0.0 && !done(sum)) {
         float front = 0.0;

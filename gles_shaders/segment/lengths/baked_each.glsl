@@ -16,5 +16,8 @@ void addLayer(inout Sum sum, inout float front, Ray ray, Segment segment, float 
 Segment composited(Segment segment) {
     return segment;
 }
+float layersOf(Segment segment) {
+    return layersInGroups(segment);
+}
 void addEntry(inout Sum sum, Ray ray, Segment segment) {}
 void addExit(inout Sum sum, Ray ray, Segment segment) {}
