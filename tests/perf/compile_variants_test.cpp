@@ -58,6 +58,21 @@ TEST(CompileVariants, DescriptionsHoldEveryAxisThatVaries) {
     EXPECT_FALSE(shown.at("axes").contains("cover")); // of one value
 }
 
+TEST(CompileVariants, KeysTellTextsApart) {
+    std::set<std::string> keys;
+    const std::set<ShaderVariant> variants = reachableVariants(1);
+    for (const ShaderVariant& variant : variants) {
+        const std::string key = textKey(variant, {}).value();
+        EXPECT_EQ(key.size(), 16U);
+        EXPECT_EQ(textKey(variant, {}).value(), key);
+        keys.insert(key);
+    }
+    EXPECT_EQ(keys.size(), variants.size());
+    const ShaderVariant loop;
+    EXPECT_NE(textKey(loop, {}).value(), textKey(loop, {.loopBodies = false}).value());
+    EXPECT_FALSE(textKey({.unroll = 4}, {.loopBodies = false}));
+}
+
 TEST(CompileVariants, OnlyTheCallGoesFromALoop) {
     const std::string text = "void addGroup(inout Sum sum) {\n}\nwhile (k < end) {\n"
                              "    addGroup(sum);\n    k += 8.0;\n}\n";
