@@ -68,8 +68,10 @@ std::vector<Ratio> ratioCandidates(const Settings& settings, const SceneFacts& f
     std::vector<Ratio> candidates;
     for (const int layers : {total, 64, 32, 16, 8, 1}) {
         for (const SegmentForm form : {SegmentForm::Loop, SegmentForm::Unrolled}) {
-            const bool allowed = settings.form == SegmentForm::Auto || settings.form == form;
-            const bool exists = form == SegmentForm::Loop || unrollLengthFor(layers) != 0;
+            const bool allowed =
+                settings.form == SegmentForm::Auto || settings.form == form || layers < kLoopGroup;
+            const bool exists =
+                form == SegmentForm::Loop ? layers >= kLoopGroup : unrollLengthFor(layers) != 0;
             const Ratio ratio{planesFor(total, std::min(layers, total)), std::min(layers, total),
                               form};
             if (allowed && exists &&

@@ -218,7 +218,7 @@ inline constexpr AxisValue kForm[] = {
      .suffix = "/loop",
      .files = {{"FORM_FILE", "segment/form/loop.glsl"},
                {"BAKED_FILE", "segment/lengths/baked.glsl"}},
-     .layersPerGroup = 8},
+     .layersPerGroup = kLoopGroup},
 #define SLABCAST_UNROLLED(n, group, ends)                                                          \
     {                                                                                              \
         .name = #n " layers", .suffix = "/unroll" #n,                                              \

@@ -87,6 +87,10 @@ std::string name(const ShaderVariant& variant) {
     return text;
 }
 
+int groupOf(const ShaderVariant& variant) {
+    return valueOn(infoOf(Axis::Form), variant).layersPerGroup;
+}
+
 std::vector<std::string> samplersOf(const ShaderVariant& variant) {
     std::vector<std::string> names;
     for (const AxisInfo& axis : kAxes) {

@@ -32,6 +32,9 @@ const char* name(Classification classification);
 /// Lengths of segments that are written out layer by layer.
 inline constexpr std::array<int, 10> kUnrollLengths = {1, 2, 4, 8, 12, 16, 24, 32, 48, 64};
 
+/// Layers in a row without a branch between them, in a loop: shorter segments are written out.
+inline constexpr int kLoopGroup = 8;
+
 /// Shortest unrolled length that holds `layersPerPlane`, or 0 where none does: then only the loop
 /// form serves.
 int unrollLengthFor(int layersPerPlane);
@@ -91,6 +94,9 @@ struct ShaderPair {
 /// Both stages, whole. Contract: the variant is valid. Fails: ShaderCompile (a file is missing).
 /// Tested by: shader_variant_test.cpp, shader_validator_test.cpp
 Result<ShaderPair> shaderText(const ShaderVariant& variant, const MeasuringText& measuring = {});
+
+/// Layers in a row without a branch between them.
+int groupOf(const ShaderVariant& variant);
 
 /// The textures that a variant's program reads, by name, in alphabetical order.
 /// Tested by: renderer_work_gl_test.cpp

@@ -62,7 +62,10 @@ TEST_F(RendererTest, ConstantVolumeHasTheClosedFormsOpacity) {
                     }
                 }
                 EXPECT_GT(inside, 1500);
-                EXPECT_LE(worst, blendingBound(plan) + 0x1p-16)
+                // fp16 holds sigma, but a layer's opacity to 2^-12 of it: of the whole depth, and
+                // depth exp(-depth) is at most 1/e.
+                const double baked = plan.variant.lengths == Lengths::Baked ? 0x1p-13 : 0.0;
+                EXPECT_LE(worst, blendingBound(plan) + baked + 0x1p-16)
                     << name(target) << ", " << name(lattice) << ", " << plan.planes << " planes, "
                     << name(plan.variant);
             }

@@ -127,6 +127,7 @@ Settings segments(int layersPerPlane, SegmentForm form) {
     Settings settings;
     settings.layersPerPlane = layersPerPlane;
     settings.form = form;
+    settings.lattice = LatticeKind::Planar;
     settings.target = TargetFormat::Rgba16f;
     settings.skip = SkipStructure::None;
     settings.termination.reset();

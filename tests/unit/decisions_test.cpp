@@ -35,6 +35,8 @@ constexpr PartMembers kParts[] = {
          to.variant.classification = from.variant.classification;
          to.variant.exactField = from.variant.exactField;
          to.variant.shaded = from.variant.shaded;
+         to.variant.table = from.variant.table;
+         to.variant.lengths = from.variant.lengths;
      }},
     {PlanPart::Skip,
      [](FramePlan& to, const FramePlan& from) {
@@ -58,6 +60,8 @@ constexpr PartMembers kParts[] = {
          to.variant.terminates = from.variant.terminates;
      }},
     {PlanPart::Outlines, [](FramePlan& to, const FramePlan& from) { to.tighten = from.tighten; }},
+    {PlanPart::Interval,
+     [](FramePlan& to, const FramePlan& from) { to.variant.interval = from.variant.interval; }},
     {PlanPart::Visibility,
      [](FramePlan& to, const FramePlan& from) { to.drawsNothing = from.drawsNothing; }},
 };

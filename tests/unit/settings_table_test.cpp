@@ -99,7 +99,7 @@ TEST(SettingsTable, eachIsReadFromTheMemberThatItNames) {
         {"layers", "100"},
         {"planes", "5"},
         {"layers-per-plane", "20"},
-        {"lattice", name(s.lattice)},
+        {"lattice", name(*s.lattice)},
         {"jitter", "on"},
         {"form", "loop"},
         {"order", name(*s.order)},

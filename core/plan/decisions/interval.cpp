@@ -8,9 +8,8 @@ namespace {
 /// Whether planes end where their segments' text does: one that went on would draw the next one's.
 bool textEndsWithPlane(const FramePlan& plan) {
     const int unrolled = plan.variant.unroll;
-    constexpr int kGroup = 8; // of a loop
     return unrolled > 0 ? unrolled == plan.layersPerPlane
-                        : plan.planes == 1 || plan.layersPerPlane % kGroup == 0;
+                        : plan.planes == 1 || plan.layersPerPlane % kLoopGroup == 0;
 }
 
 /// What cuts a ray's stay where it may be seen, or why cutting it costs less than not to.

@@ -19,7 +19,7 @@ SegmentForm formFor(const PlanInput& in, int layersPerPlane) {
 
 Ratio dealtOut(int total, int layersPerPlane, SegmentForm form) {
     const int length = std::min(layersPerPlane, total);
-    return {planesFor(total, length), length, form};
+    return {planesFor(total, length), length, length < kLoopGroup ? SegmentForm::Unrolled : form};
 }
 
 struct Chosen {

@@ -4,7 +4,7 @@ const bool kEyeIsOutside = false;
 struct Segment {
     float front; // offset of its first layer's front
     float entry; // of the stay, in layers from there; below 0: before it
-    float exit;  // at most the plane's layers; below 0 where the ray misses the plane's slab
+    float exit;  // at most the plane's layers; below 0 where none of them is inside
 };
 
 /// A ray along an axis divides by next to nothing, and one in a face lies inside: the box is wider
@@ -16,8 +16,8 @@ Segment segmentOf(Ray ray, float front) {
     precise vec3 near = fma(abs(inverse), vec3(-kHalf), middle);
     precise vec3 far = fma(abs(inverse), vec3(kHalf), middle);
     precise float entry = max(max(near.x, near.y), max(near.z, ray.nearOffset)) - front;
-    precise float exit = min(min(far.x, far.y), far.z) - front;
-    return Segment(front, entry, entry < exit ? min(exit, viewport.z) : -1.0);
+    precise float exit = min(min(min(far.x, far.y), far.z) - front, viewport.z);
+    return Segment(front, entry, entry < exit ? exit : -1.0);
 }
 
 /// Whether any of n layers from k on is inside.
@@ -33,7 +33,9 @@ float partInside(Segment segment, float k) {
 
 /// Without the layers that are inside in part.
 Segment wholeLayers(Segment segment) {
-    return Segment(segment.front, ceil(segment.entry), floor(segment.exit));
+    float entry = ceil(segment.entry);
+    float exit = floor(segment.exit);
+    return Segment(segment.front, entry, entry < exit ? exit : -1.0);
 }
 
 /// The layer that the stay begins in, or ends in, where it is one of the segment's that is inside in
