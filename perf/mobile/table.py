@@ -5,7 +5,7 @@ usage: perf/mobile/table.py [--out DIR] [--gpu NAME,...] [--only REGEX | --rows]
   --out DIR       mobile.json, mobile.csv, report.html and figures go there [build/mobile]
   --gpu NAMES     of the list in perf/mobile/gpus.py [all]
   --only REGEX    variants whose label it is found in, as '^post[+]balls[+]terminate/unroll16 shells$' [all]
-  --rows          the variants that perf/mobile/rows.csv names
+  --rows          the variants that perf/mobile/rows.csv names, whether plans reach them or not
   --choices N     those that plans reach from settings with N choices other than the default, 1 to 3 [2]; all: every
                   variant there is
   --program FILE  slabcast-compile [build/bin/slabcast-compile]
@@ -129,7 +129,7 @@ def write(given, rows):
 
 def main():
     given = arguments()
-    options = ["--choices", given.choices]
+    options = ["--choices", "all" if given.rows else given.choices]
     say = (lambda text: None) if given.print else (lambda text: print(text, file=sys.stderr, flush=True))
     try:
         keys = chosen(given, options)
