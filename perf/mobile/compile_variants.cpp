@@ -111,10 +111,11 @@ Result<ShaderPair> textOf(const ShaderVariant& variant, const CompileOptions& op
     if (!text || options.loopBodies) {
         return text;
     }
-    std::optional<std::string> empty = withoutLoopBody(text->fragment);
+    std::optional<std::string> empty =
+        variant.unroll == 0 ? withoutLoopBody(text->fragment) : std::nullopt;
     if (!empty) {
         return fail(ErrorCode::ShaderCompile,
-                    labelOf(variant) + ": no line of its own calls " + std::string(kBody) + "...)");
+                    labelOf(variant) + ": no loop whose body is " + std::string(kBody) + "...)");
     }
     text->fragment = std::move(*empty);
     return text;

@@ -55,7 +55,8 @@ std::vector<SceneFacts> factsOfAllKinds(bool extremes) {
         for (const bool exact : {false, true}) {
             for (const double extinction : {1e-6, 10.0}) {
                 for (const int kind : {0, 1, 2, 3}) {
-                    if (extremes && (kind == 1 || kind == 2)) {
+                    const bool usual = skip.structure == SkipStructure::Proximity;
+                    if (extremes && kind != 0 && !(kind == 3 && extinction > 1.0 && usual)) {
                         continue;
                     }
                     SceneFacts facts;
