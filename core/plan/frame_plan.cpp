@@ -66,14 +66,14 @@ int totalLayers(const Settings& settings, const SceneFacts& facts) {
 std::vector<Ratio> ratioCandidates(const Settings& settings, const SceneFacts& facts) {
     const int total = totalLayers(settings, facts);
     std::vector<Ratio> candidates;
-    for (const int layers : {total, 64, 32, 16, 8, 1}) {
+    for (const int most : {total, 64, 32, 16, 8, 1}) {
+        const int layers = std::min(most, total);
         for (const SegmentForm form : {SegmentForm::Loop, SegmentForm::Unrolled}) {
-            const bool allowed =
-                settings.form == SegmentForm::Auto || settings.form == form || layers < kLoopGroup;
-            const bool exists =
-                form == SegmentForm::Loop ? layers >= kLoopGroup : unrollLengthFor(layers) != 0;
-            const Ratio ratio{planesFor(total, std::min(layers, total)), std::min(layers, total),
-                              form};
+            const bool allowed = settings.form == SegmentForm::Auto || settings.form == form ||
+                                 layers < kLoopGroup;
+            const bool exists = form == SegmentForm::Loop ? layers >= kLoopGroup
+                                                          : unrollLengthFor(layers) != 0;
+            const Ratio ratio{planesFor(total, layers), layers, form};
             if (allowed && exists &&
                 std::find(candidates.begin(), candidates.end(), ratio) == candidates.end()) {
                 candidates.push_back(ratio);

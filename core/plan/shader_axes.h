@@ -97,12 +97,12 @@ inline constexpr AxisValue kSkip[] = {
      .suffix = "+balls",
      .files = {{"SKIP_FILE", "segment/skip/balls.glsl"}},
      .samplers = {Sampler::Skip},
-     .fields = {"skipMap", "skipBlocks"}},
+     .fields = {"skipMap"}},
     {.name = "boxes",
      .suffix = "+boxes",
      .files = {{"SKIP_FILE", "segment/skip/boxes.glsl"}},
      .samplers = {Sampler::Skip},
-     .fields = {"skipMap", "skipBlocks"}},
+     .fields = {"skipMap"}},
     {.name = "octree",
      .suffix = "+octree",
      .files = {{"SKIP_FILE", "segment/skip/octree.glsl"},
@@ -217,12 +217,15 @@ inline constexpr AxisValue kForm[] = {
     {.name = "loop",
      .suffix = "/loop",
      .files = {{"FORM_FILE", "segment/form/loop.glsl"},
-               {"BAKED_FILE", "segment/lengths/baked.glsl"}},
+               {"BAKED_FILE", "segment/lengths/baked.glsl"},
+               {"OCTREE_WALK_FILE", "segment/skip/octree_walk.glsl"}},
      .layersPerGroup = kLoopGroup},
 #define SLABCAST_UNROLLED(n, group, ends)                                                          \
     {                                                                                              \
         .name = #n " layers", .suffix = "/unroll" #n,                                              \
-        .files = {{"FORM_FILE", "segment/form/unrolled.glsl"}, {"BAKED_FILE", ends}},              \
+        .files = {{"FORM_FILE", "segment/form/unrolled.glsl"},                                     \
+                  {"BAKED_FILE", ends},                                                            \
+                  {"OCTREE_WALK_FILE", "segment/skip/octree_no_walk.glsl"}},                       \
         .layersWrittenOut = n, .layersPerGroup = group                                             \
     }
     SLABCAST_UNROLLED(1, 1, "segment/lengths/baked_each.glsl"),

@@ -28,8 +28,9 @@ glm::ivec2 withRoom(glm::ivec2 table, const gl::Caps& caps) {
 
 } // namespace
 
-/// Texels as they are uploaded. A filtered row is filled to its end with the last texel, which
-/// holds for all values beyond.
+/// Texels as they are uploaded. A filtered row is filled with the last texel, which holds for all
+/// values beyond, to a length that is a power of two: so a place in it is the same number for a
+/// scene that is edited and one that is not.
 TableTexels TableTexture::texelsOf(const Scene& scene, const Content& content,
                                    const gl::Caps& caps) {
     if (const PreintegratedTable* square = scene.preintegrated()) {
@@ -47,9 +48,7 @@ TableTexels TableTexture::texelsOf(const Scene& scene, const Content& content,
         return tableTexels(row_, table.wide);
     }
     const glm::ivec2 size(static_cast<int>(row_.size()), 1);
-    if (scene.live() != nullptr) {
-        row_.resize(static_cast<std::size_t>(withRoom(size, caps).x), row_.back());
-    }
+    row_.resize(static_cast<std::size_t>(withRoom(size, caps).x), row_.back());
     return filteredTableTexels(row_);
 }
 

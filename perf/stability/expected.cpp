@@ -83,6 +83,12 @@ ExpectedPicture expectedOfUniform(const Exhibit& exhibit, const FramePlan& plan,
         makeRayFrame(exhibit.view, exhibit.viewport(), exhibit.scene.geometry(), plan.lattice);
     // Every layer's opacity is off by 2^-22, its place in the sum by as much.
     const double layers = plan.lattice.total * 0x1p-21;
+    // A baked one is rounded to fp16: by 2^-12 of itself, which is of its depth as much and the
+    // more the denser a layer is.
+    const double layerDepth = extinctionPerMm * plan.lattice.spacingMm;
+    const double baked = plan.variant.lengths == Lengths::Baked
+                             ? 0x1p-12 * std::expm1(layerDepth) / layerDepth
+                             : 0.0;
     return perPixel<PixelReference>(exhibit, [&](glm::dvec2 fragCoord) {
         const EyeRay ray =
             eyeRayOf(exhibit.view, exhibit.viewport(), exhibit.scene.geometry(), fragCoord);
@@ -96,7 +102,9 @@ ExpectedPicture expectedOfUniform(const Exhibit& exhibit, const FramePlan& plan,
             alphaOf(chordMm(ray, near + error.nearMm, -error.uvw) - error.lengthMm);
         const double longest = chordMm(ray, near - error.nearMm, error.uvw);
         const double most = longest > 0.0 ? alphaOf(longest + error.lengthMm) : 0.0;
-        const double bound = std::max(most - alpha, alpha - least);
+        const double depth = extinctionPerMm * std::max(0.0, longest);
+        const double bound =
+            std::max(most - alpha, alpha - least) + baked * depth * std::exp(-depth);
         return PixelReference{glm::dvec4(color * alpha, alpha),
                               longest > 0.0 ? bound + layers : 0.0, false};
     });

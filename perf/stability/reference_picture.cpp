@@ -92,6 +92,31 @@ double sampledStep(TexelFormat format) {
     }
 }
 
+/// What a layer's opacity, baked into the table, is off by: fp16's rounding, and that between two
+/// texels opacity runs linearly, not extinction: 1 - exp(-depth) leaves its chord by at most the
+/// square of the difference of depths over 8. So does a premultiplied colour, whose product of two
+/// linear ones leaves its chord by a quarter of the product of their differences.
+double bakedError(const TransferTable& table, double value, double lengthMm) {
+    const auto last = static_cast<double>(table.texels.size() - 1);
+    const double place = std::clamp(
+        (value - table.firstValue) * last / (table.lastValue - table.firstValue), 0.0, last);
+    const auto low = static_cast<std::size_t>(std::max(0.0, std::floor(place) - 1.0));
+    const std::size_t high = std::min(low + 3, table.texels.size() - 1); // a texel to either side
+    double most = 0.0;
+    double rise = 0.0;
+    double hue = 0.0;
+    for (std::size_t k = low; k <= high; ++k) {
+        const double depth = table.texels[k].a * table.extinctionPerMm * lengthMm;
+        most = std::max(most, -std::expm1(-depth));
+        if (k > low) {
+            const glm::vec4 step = glm::abs(table.texels[k] - table.texels[k - 1]);
+            rise = std::max(rise, step.a * table.extinctionPerMm * lengthMm);
+            hue = std::max({hue, double(step.x), double(step.y), double(step.z)});
+        }
+    }
+    return most * 0x1p-11 + 0x1p-24 + rise * rise / 8.0 + std::min(rise, 1.0) * hue / 4.0;
+}
+
 } // namespace
 
 struct ReferencePicture::Ray {
@@ -179,8 +204,12 @@ ReferencePicture::Layer ReferencePicture::postClassified(glm::dvec3 uvw, const R
     if (plan_.variant.shaded && alpha.z > 0.0) {
         shade(color, colorError, uvw, ray);
     }
-    const double alphaError = spread(alpha) + 0x1p-22;
-    return {glm::dvec4(color * alpha.y, alpha.y), alpha.z * colorError + alphaError, alphaError};
+    const double baked = plan_.variant.lengths == Lengths::Baked
+                             ? bakedError(scene_.table(), field.value, lengths.z)
+                             : 0.0;
+    const double alphaError = spread(alpha) + baked + 0x1p-22;
+    return {glm::dvec4(color * alpha.y, alpha.y), alpha.z * colorError + baked + alphaError,
+            alphaError};
 }
 
 /// Blinn-Phong with a head light, from the gradient of the field one voxel apart.

@@ -87,6 +87,9 @@ SceneFacts randomFacts(Dice& dice) {
     facts.anythingVisible = dice.chance(0.8);
     facts.occupiedFraction = dice.uniform(0.0, 1.0);
     facts.maxExtinctionPerMm = dice.logUniform(1e-6, 100.0);
+    facts.filtersTable = dice.chance(0.5);
+    facts.facesAreClear = dice.chance(0.5);
+    facts.isEdited = dice.chance(0.2);
     return facts;
 }
 
@@ -95,7 +98,7 @@ void expectSound(const FramePlan& p, const Settings& s, const SceneFacts& facts)
     EXPECT_GE(std::int64_t{p.planes} * p.layersPerPlane, p.lattice.total);
     EXPECT_GE(p.lattice.total * p.lattice.spacingMm, 2.0 * facts.sphere.radiusMm * (1.0 - 1e-11));
     EXPECT_EQ(p.lattice.total, totalLayers(s, facts));
-    EXPECT_EQ(p.lattice.kind, s.lattice);
+    EXPECT_EQ(p.lattice.kind, s.lattice.value_or(p.lattice.kind));
     EXPECT_TRUE(p.variant.valid()) << name(p.variant);
     EXPECT_FALSE(p.variant.counts);
     EXPECT_TRUE(p.variant.unroll == 0 || p.variant.unroll >= p.layersPerPlane);
@@ -125,7 +128,13 @@ void expectExplained(const FramePlan& p, const Settings& s, const SceneFacts& fa
         p.tighten ? "tight planes" : "10-gons",
         std::string("target ") + name(p.target),
         name(p.order),
+        p.variant.lengths == Lengths::Baked ? "opacity baked" : "opacity per ray",
+        p.variant.interval == Interval::Box ? "interval box" : "no interval",
     };
+    if (p.variant.classification == Classification::Post) {
+        choices.push_back(p.variant.table == TableRead::Filtered ? "table filtered"
+                                                                 : "table fetched");
+    }
     if (p.variant.fetchesTarget) {
         choices.push_back("fetched target");
     } else if (p.planesPerMark > 0) {
@@ -173,7 +182,7 @@ TEST(FramePlan, DiffersWhereAPictureWould) {
         {.classification = Classification::Pre},
         {.classification = Classification::Preintegrated},
         {.skip = SkipStructure::None},
-        {.lattice = LatticeKind::Shells},
+        {.lattice = LatticeKind::Planar},
         {.layerSpacingVoxels = 0.5},
         {.totalLayers = 100},
         {.planes = 3},
@@ -203,7 +212,7 @@ TEST(FramePlan, IsEqualWhateverWasMeasuredOnTheWay) {
 
 TEST(FramePlan, IsUnequalInAnyOtherMember) {
     const std::pair<const char*, void (*)(FramePlan&)> changes[] = {
-        {"lattice", [](FramePlan& p) { p.lattice.kind = LatticeKind::Shells; }},
+        {"lattice", [](FramePlan& p) { p.lattice.kind = LatticeKind::Planar; }},
         {"lattice", [](FramePlan& p) { ++p.lattice.total; }},
         {"lattice", [](FramePlan& p) { p.lattice.spacingMm *= 2.0; }},
         {"lattice", [](FramePlan& p) { p.lattice.jittered = true; }},
@@ -261,9 +270,9 @@ TEST(FramePlan, TheRatioNeverMovesTheLattice) {
 
 TEST(FramePlan, SpacingAndTotalGiveTheSameLattice) {
     const FramePlan bySpacing = planned({.layerSpacingVoxels = 1.0});
-    EXPECT_EQ(bySpacing.lattice, (Lattice{LatticeKind::Planar, 444, 1.0}));
+    EXPECT_EQ(bySpacing.lattice, (Lattice{LatticeKind::Shells, 444, 1.0}));
     EXPECT_EQ(planned({.totalLayers = 444}).lattice, bySpacing.lattice);
-    EXPECT_EQ(planned({.totalLayers = 1}).lattice, (Lattice{LatticeKind::Planar, 1, 444.0}));
+    EXPECT_EQ(planned({.totalLayers = 1}).lattice, (Lattice{LatticeKind::Shells, 1, 444.0}));
 }
 
 TEST(FramePlan, TakesTheFastestMeasuredRatio) {
@@ -311,7 +320,8 @@ TEST(FramePlan, CandidatesReachFromSlicingToRayCasting) {
         for (const Ratio& r : candidates) {
             EXPECT_GE(r.planes * r.layersPerPlane, total);
             EXPECT_LT((r.planes - 1) * r.layersPerPlane, total); // no plane without layers
-            EXPECT_TRUE(r.form == SegmentForm::Loop || unrollLengthFor(r.layersPerPlane) > 0)
+            EXPECT_TRUE(r.form == SegmentForm::Loop ? r.layersPerPlane >= kLoopGroup
+                                                    : unrollLengthFor(r.layersPerPlane) > 0)
                 << name(r);
             names.insert(name(r));
             slicing |= r.layersPerPlane == 1;
@@ -322,7 +332,7 @@ TEST(FramePlan, CandidatesReachFromSlicingToRayCasting) {
     }
     for (const SegmentForm form : {SegmentForm::Loop, SegmentForm::Unrolled}) {
         for (const Ratio& r : ratioCandidates({.form = form}, boneFacts())) {
-            EXPECT_EQ(r.form, form);
+            EXPECT_EQ(r.form, r.layersPerPlane < kLoopGroup ? SegmentForm::Unrolled : form);
         }
     }
 }

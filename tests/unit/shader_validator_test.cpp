@@ -175,7 +175,8 @@ TEST_F(ShaderValidator, NoticesWhatDoesNotCompileOrLink) {
     const ShaderPair good = shaderText({.unroll = 8}).value();
     const ShaderPair bad[] = {
         withReplacement(good, &ShaderPair::fragment, "float sampleField(", "float renamedField("),
-        withReplacement(good, &ShaderPair::vertex, "flat out int plane", "flat out float plane"),
+        withReplacement(good, &ShaderPair::vertex, "flat out float planeFront",
+                        "flat out int planeFront"),
     };
     EXPECT_EQ(complaints(folder_, "good", good), "");
     for (const ShaderPair& pair : bad) {

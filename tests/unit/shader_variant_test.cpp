@@ -57,10 +57,12 @@ std::vector<ShaderVariant> product() {
 
 TEST(ShaderVariant, ValidOnesAreAsManyAsTheRequirementsLeave) {
     // 11 forms (10 lengths and the loop), 6 of skipping, 3 of termination (none, within segments,
-    // across planes), counting, two lattices, jitter; post also has shaded and exactField,
-    // pre-integrated exactField.
-    const std::size_t looks = 4 + 1 + 2;
-    const std::size_t named = 11 * (6 * 3 * 2) * looks;
+    // across planes), counting, two intervals, and jitter. Post is shaded or not, and its field and
+    // table are exact, its table is, or neither; pre-integrated has an exact field or not. Shells
+    // may have their lengths baked, but for pre-integrated layers.
+    const std::size_t alike = 11 * (6 * 3 * 2) * 2;
+    const std::size_t named = alike * (2 * 3 * 2 + 1 * 2 + 2);
+    const std::size_t valid = alike * 2 * (2 * 3 * 3 + 1 * 3 + 2 * 2);
     std::set<ShaderVariant> variants;
     std::set<std::string> names;
     for (const ShaderVariant& v : product()) {
@@ -69,7 +71,7 @@ TEST(ShaderVariant, ValidOnesAreAsManyAsTheRequirementsLeave) {
             names.insert(name(v));
         }
     }
-    EXPECT_EQ(variants.size(), named * 4);
+    EXPECT_EQ(variants.size(), valid);
     EXPECT_EQ(names.size(), named); // lattice and jitter are stated beside the name
 }
 
@@ -164,16 +166,22 @@ TEST(ShaderVariant, WhatIsOffIsAbsentFromTheText) {
         {"texelFetch(skipTexels", [](const V& v) { return v.skip != SkipForm::None; }},
         {"sampler2D transferTable;",
          [](const V& v) { return v.classification != Classification::Pre; }},
-        {"texelFetch(transferTable", post},
+        {"texelFetch(transferTable",
+         [=](const V& v) { return post(v) && v.table == TableRead::Exact; }},
         {"textureLod(transferTable",
-         [](const V& v) { return v.classification == Classification::Preintegrated; }},
+         [](const V& v) {
+             return v.classification == Classification::Preintegrated ||
+                    v.table == TableRead::Filtered;
+         }},
+        {"segment.entry", [](const V& v) { return v.interval == Interval::Box; }},
+        {"ray.layerLength * step0.w", [](const V& v) { return v.lengths == Lengths::PerRay; }},
         {"texelFetch(volumeTexels", [](const V& v) { return v.exactField; }},
         {"textureLod(volumeTexels", [](const V& v) { return !v.exactField; }},
         {"gradientRow[0].", [](const V& v) { return v.shaded; }},
         {"material.z * pow(", [](const V& v) { return v.shaded; }},
         {"pow(", [](const V& v) { return v.shaded; }},
         {"halved", never},
-        {"dot(missed", [](const V& v) { return v.lattice == LatticeKind::Shells; }},
+        {"missed.zw", [](const V& v) { return v.lattice == LatticeKind::Shells; }},
         {"jitterOf(", [](const V& v) { return v.jittered; }},
         {"viewport.w", [](const V& v) { return v.terminates; }},
         {"out highp vec4 colour;", [](const V& v) { return !v.counts; }},
@@ -269,12 +277,17 @@ TEST(ShaderVariant, OnlyMeasuringRoundsToHalfs) {
 TEST(ShaderVariant, UnrolledTextsWriteOutTheirLengthOfLayers) {
     for (const int length : kUnrollLengths) {
         const std::string text = withoutComments(shaderText({.unroll = length}).value().fragment);
-        EXPECT_EQ(count(text, "X("), static_cast<std::size_t>(length)) << length;
+        const int group = groupOf({.unroll = length});
+        EXPECT_EQ(length % group, 0);
+        EXPECT_LE(group, kLoopGroup);
         for (int layer = 0; layer < length; ++layer) {
-            EXPECT_EQ(count(text, "X(" + std::to_string(layer) + ") "), 1U);
+            EXPECT_EQ(count(text, "X(" + std::to_string(layer) + ".0) "),
+                      layer % group == 0 ? 1U : 0U);
+            EXPECT_EQ(count(text, "X(" + std::to_string(layer) + ") "), layer < group ? 1U : 0U);
         }
     }
-    EXPECT_EQ(count(shaderText({}).value().fragment, "REPEAT_LAYERS"), 0U);
+    EXPECT_EQ(groupOf({}), kLoopGroup);
+    EXPECT_EQ(count(withoutComments(shaderText({}).value().fragment), "X(0.0)"), 0U);
 }
 
 /// Follows the #line directives: every line must be that of the file and number which the driver

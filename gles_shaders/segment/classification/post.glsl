@@ -4,7 +4,7 @@
 #include "segment/classification/one_material.glsl"
 #include SHADING_FILE
 #include MATERIAL_OF_VALUE_FILE
-float fullLight(vec4 material);
+float fullLight(vec4 found);
 
 vec4 layerAt(Ray ray, Segment segment, float k, inout float front) {
     vec3 uvw = middleOf(ray, segment, k);

@@ -2,7 +2,7 @@
 #include "segment/lengths/opacity.glsl"
 #include OF_LENGTH_FILE
 
-float fullLight(vec4 material) {
+float fullLight(vec4 found) {
     return 1.0;
 }
 

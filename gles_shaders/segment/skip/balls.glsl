@@ -9,8 +9,10 @@
 
 bool isFree(Ray ray, Segment segment, float first, float last) {
     float reach = 0.5 * (last - first) * ray.layerLength;
-    uint least = uint(min(fma(reach, skipMap.w, 1.0), 255.0)); // the greatest count there is
-    return countIsAbove(ivec3(blocksAt(ray, segment, 0.5 * (first + last))), least);
+    float least = min(fma(reach, skipMap.w, 1.0), 255.0); // the greatest count there is
+    // A lone sample is free where its block is.
+    return countIsAbove(ivec3(blocksAt(ray, segment, 0.5 * (first + last))),
+                        first < last ? uint(least) : 0u);
 }
 
 float freeThrough(Ray ray, Segment segment, float first, float last) {

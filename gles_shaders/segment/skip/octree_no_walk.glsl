@@ -1,0 +1,1 @@
+// Written-out segments look at one node a group.
