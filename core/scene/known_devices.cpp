@@ -104,6 +104,11 @@ std::vector<TexelFormatTest> assumedFormats(const KnownDevice& known) {
     };
 }
 
+TableFilterTest assumedTableFilter(const KnownDevice& known) {
+    // Weighted means of zeros are zero, however coarse the weights.
+    return {true, known.filterErrorPerAxis, "assumed: weights of eight bits, cut off"};
+}
+
 Result<Device> openAs(const KnownDevice& known, gl::GetProc getProc, DeviceOptions options) {
     if (Result<void> loaded = gl::loadApi(getProc); !loaded) {
         return tl::unexpected(loaded.error());
@@ -115,7 +120,8 @@ Result<Device> openAs(const KnownDevice& known, gl::GetProc getProc, DeviceOptio
     if (!options.quirks) {
         options.quirks = knownQuirks(*running);
     }
-    return Device(assumedCaps(known, *running), assumedFormats(known), std::move(options));
+    return Device(assumedCaps(known, *running), assumedFormats(known), std::move(options),
+                  assumedTableFilter(known));
 }
 
 } // namespace slabcast

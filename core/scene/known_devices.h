@@ -34,6 +34,7 @@ gl::Caps assumedCaps(const KnownDevice& known, const gl::Caps& running);
 
 /// What the self-tests would find there: each format as wrong as the device's filter may be.
 std::vector<TexelFormatTest> assumedFormats(const KnownDevice& known);
+TableFilterTest assumedTableFilter(const KnownDevice& known);
 
 /// As Device::open(), but nothing is drawn: capabilities and results of self-tests are the known
 /// device's. What a driver is slow at or wrong in stays that of the one that runs. Tested by:

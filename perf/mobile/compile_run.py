@@ -5,24 +5,46 @@ import os
 import signal
 import subprocess
 import tempfile
+from pathlib import Path
 from threading import Timer
 
 import gpus
 from compiler_output import fragment_figures
 
 PATIENCE_S = 180  # for one variant
+BATCH = 64  # variants of one process
 
 
 class Broken(Exception):
     """One line: why nothing could be compiled."""
 
 
-def labels_of(program, options):
-    """What would be compiled, without a compiler. Raises Broken."""
+def keys_of(program, options):
+    """{label: key of its text} of what would be compiled, without a compiler. Raises Broken."""
     asked = subprocess.run([program, "--list", *options], capture_output=True, text=True)
     if asked.returncode != 0:
         raise Broken(asked.stderr.strip() or f"{program} ended with status {asked.returncode}")
-    return asked.stdout.splitlines()
+    return {label: key for key, label in (line.split(" ", 1) for line in asked.stdout.splitlines())}
+
+
+class Known:
+    """Rows of texts that were compiled before, in a file of its own for each GPU; a run cut short goes on from it."""
+
+    def __init__(self, path):
+        self.path, self.rows = path, {}
+        try:
+            for line in path.read_text(encoding="utf-8").splitlines():
+                row = json.loads(line)
+                self.rows[row.pop("key")] = row
+        except (OSError, ValueError, KeyError):
+            pass  # what cannot be read is compiled again
+
+    def add(self, key, row):
+        if key == "-" or "failed" in row or key in self.rows:
+            return
+        self.rows[key] = row
+        with self.path.open("a", encoding="utf-8") as file:
+            file.write(json.dumps({"key": key, **row}) + "\n")
 
 
 def _parsed(line):
@@ -74,17 +96,20 @@ def _run_once(gpu, program, options, labels, rows):
         raise Broken(f"{gpu.title}: {said or f'{program} ended with status {status}'}")
 
 
-def compile_all(gpu, program, labels, options=(), progress=lambda count: None):
+def compile_all(gpu, program, keys, options=(), progress=lambda count: None, known=None):
     """{label: row} of these variants on a GPU; a row has "fragment", its figures, or "failed", why it has none.
-    Raises Broken and gpus.NoCompilers."""
-    rows = {}
+    `keys`: as keys_of(); `known`: what need not be compiled again. Raises Broken and gpus.NoCompilers."""
+    labels, known = list(keys), known or Known(Path(os.devnull))
+    rows = {label: {**known.rows[key], "variant": label} for label, key in keys.items() if key in known.rows}
     while missing := [label for label in labels if label not in rows]:
         before = len(rows)
-        _run_once(gpu, program, options, missing[:256], rows)
+        _run_once(gpu, program, options, missing[:BATCH], rows)
         if len(rows) == before:
             raise Broken(f"{gpu.title}: {program} compiled nothing of what it was asked for")
+        for label in missing[:BATCH]:
+            if label in rows:
+                if "fragment" not in rows[label]:
+                    rows[label].setdefault("failed", "the compiler gave no figures")
+                known.add(keys[label], rows[label])
         progress(len(rows))
-    for row in rows.values():
-        if "fragment" not in row:
-            row.setdefault("failed", "the compiler gave no figures")
     return rows

@@ -111,16 +111,35 @@ Result<ShaderPair> textOf(const ShaderVariant& variant, const CompileOptions& op
     if (!text || options.loopBodies) {
         return text;
     }
-    std::optional<std::string> empty = withoutLoopBody(text->fragment);
+    std::optional<std::string> empty =
+        variant.unroll == 0 ? withoutLoopBody(text->fragment) : std::nullopt;
     if (!empty) {
         return fail(ErrorCode::ShaderCompile,
-                    labelOf(variant) + ": no line of its own calls " + std::string(kBody) + "...)");
+                    labelOf(variant) + ": no loop whose body is " + std::string(kBody) + "...)");
     }
     text->fragment = std::move(*empty);
     return text;
 }
 
 } // namespace
+
+Result<std::string> textKey(const ShaderVariant& variant, const CompileOptions& options) {
+    const Result<ShaderPair> text = textOf(variant, options);
+    if (!text) {
+        return tl::unexpected(text.error());
+    }
+    std::uint64_t hash = 14695981039346656037ULL; // FNV-1a
+    for (const std::string* part : {&text->vertex, &text->fragment}) {
+        for (const char c : *part) {
+            hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+        }
+    }
+    std::string digits(16, '0');
+    for (auto digit = digits.rbegin(); digit != digits.rend(); ++digit, hash >>= 4) {
+        *digit = "0123456789abcdef"[hash & 15U];
+    }
+    return digits;
+}
 
 Result<void> compileVariants(std::span<const ShaderVariant> variants, const CompileOptions& options,
                              const CompileListener& listener) {

@@ -27,6 +27,11 @@ struct CompileOptions {
     bool loopBodies = true; // else withoutLoopBody()
 };
 
+/// Of the text that is compiled, as sixteen hexadecimal digits: the same digits, the same cost.
+/// Fails: as shaderText(), and where a loop's body is not found. Tested by:
+/// compile_variants_test.cpp
+Result<std::string> textKey(const ShaderVariant& variant, const CompileOptions& options);
+
 /// Of a variant that is about to be compiled; and of the failure, where there was one.
 using CompileListener = std::function<void(const ShaderVariant& variant, const Error* failure)>;
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes Mesa's compilers for mobile GPUs from Debian's source, with shims that stand for the kernel's drivers, so that
-# no hardware is needed. What is made is kept. Two cores take 6 minutes for 22, and 10 for 25.
+# no hardware is needed. What is made is kept. Two cores take about ten minutes for either.
 # usage: perf/mobile/compilers.sh 22|25
 #   22: Debian 12's Mesa 22.3, built here: Mali G71, G52, G57; Adreno 630, 650/660
 #   25: Debian 13's Mesa 25, built in a root of its own: Mali G610; Adreno 740

@@ -47,10 +47,14 @@ def build_folder(mesa):
     return Path(made.stdout.strip().splitlines()[-1])
 
 
+def cache():
+    """Where compilers.sh keeps what it made."""
+    return Path(os.environ.get("SLABCAST_COMPILERS", Path.home() / ".cache" / "slabcast-compilers"))
+
+
 def present(mesa):
     """Whether it was made before."""
-    cache = os.environ.get("SLABCAST_COMPILERS", Path.home() / ".cache" / "slabcast-compilers")
-    return Path(cache, f"{mesa}.done").exists()
+    return (cache() / f"{mesa}.done").exists()
 
 
 def _environment(gpu, build):

@@ -20,6 +20,7 @@ std::vector<Change> settingsChanges() {
         [](Settings& s) { s.classification = Classification::Pre; },
         [](Settings& s) { s.classification = Classification::Preintegrated; },
         [](Settings& s) { s.skip = SkipStructure::None; },
+        [](Settings& s) { s.lattice = LatticeKind::Planar; },
         [](Settings& s) { s.lattice = LatticeKind::Shells; },
         [](Settings& s) { s.jitter = true; },
         [](Settings& s) { s.totalLayers = 1; },
@@ -38,8 +39,9 @@ std::vector<Change> settingsChanges() {
     return changes;
 }
 
-/// Every form of skipping, filtered or exact, as thin and as dense as decides anything.
-std::vector<SceneFacts> factsOfAllKinds() {
+/// Every form of skipping, filtered or exact, as thin and as dense as decides anything, with clear
+/// faces or not, and on devices whose filter may read a table or not.
+std::vector<SceneFacts> factsOfAllKinds(bool extremes) {
     const SkipOptions structures[] = {
         {.structure = SkipStructure::None},
         {.structure = SkipStructure::Proximity},
@@ -52,11 +54,24 @@ std::vector<SceneFacts> factsOfAllKinds() {
     for (const SkipOptions& skip : structures) {
         for (const bool exact : {false, true}) {
             for (const double extinction : {1e-6, 10.0}) {
-                all.push_back({.sphere = {glm::dvec3(0.0), 222.0},
-                               .exactField = exact,
-                               .skip = skip,
-                               .occupiedFraction = 0.5,
-                               .maxExtinctionPerMm = extinction});
+                for (const int kind : {0, 1, 2, 3}) {
+                    const bool usual = skip.structure == SkipStructure::Proximity;
+                    if (extremes && kind != 0 && !(kind == 3 && extinction > 1.0 && usual)) {
+                        continue;
+                    }
+                    SceneFacts facts;
+                    facts.sphere = {glm::dvec3(0.0), 222.0};
+                    facts.exactField = exact;
+                    facts.skip = skip;
+                    facts.occupiedFraction = 0.5;
+                    facts.maxExtinctionPerMm = extinction;
+                    facts.facesAreClear = kind % 2 == 1;
+                    facts.filtersTable = kind / 2 == 1;
+                    if (kind / 2 == 1) { // pre-classified texels are made for this spacing
+                        facts.classifiedLengthMm = facts.smallestVoxelEdgeMm;
+                    }
+                    all.push_back(facts);
+                }
             }
         }
     }
@@ -64,8 +79,8 @@ std::vector<SceneFacts> factsOfAllKinds() {
 }
 
 /// Whatever the scene and the device.
-void planAll(const Settings& settings, std::set<ShaderVariant>& reached) {
-    static const std::vector<SceneFacts> facts = factsOfAllKinds();
+void planAll(const Settings& settings, const std::vector<SceneFacts>& facts,
+             std::set<ShaderVariant>& reached) {
     for (const SceneFacts& of : facts) {
         for (const int device : {0, 1, 2, 3}) {
             gl::Caps caps;
@@ -83,13 +98,14 @@ void planAll(const Settings& settings, std::set<ShaderVariant>& reached) {
 
 } // namespace
 
-std::set<ShaderVariant> reachableVariants(int choices) {
+std::set<ShaderVariant> reachableVariants(int choices, bool extremes) {
     std::set<ShaderVariant> reached;
     const std::vector<Change> changes = settingsChanges();
+    const std::vector<SceneFacts> facts = factsOfAllKinds(extremes);
     const std::function<void(const Settings&, std::size_t, int)> choose =
         [&](const Settings& settings, std::size_t from, int left) {
             if (left == 0) {
-                planAll(settings, reached);
+                planAll(settings, facts, reached);
                 return;
             }
             for (std::size_t k = from; k < changes.size(); ++k) {

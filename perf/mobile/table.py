@@ -5,7 +5,7 @@ usage: perf/mobile/table.py [--out DIR] [--gpu NAME,...] [--only REGEX | --rows]
   --out DIR       mobile.json, mobile.csv, report.html and figures go there [build/mobile]
   --gpu NAMES     of the list in perf/mobile/gpus.py [all]
   --only REGEX    variants whose label it is found in, as '^post[+]balls[+]terminate/unroll16 shells$' [all]
-  --rows          the variants that perf/mobile/rows.csv names
+  --rows          the variants that perf/mobile/rows.csv names, whether plans reach them or not
   --choices N     those that plans reach from settings with N choices other than the default, 1 to 3 [2]; all: every
                   variant there is
   --program FILE  slabcast-compile [build/bin/slabcast-compile]
@@ -25,7 +25,7 @@ from pathlib import Path
 
 import gpus
 import table_files
-from compile_run import Broken, compile_all, labels_of
+from compile_run import Broken, Known, compile_all, keys_of
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "perf" / "pages" / "mobile_report.py"
@@ -42,18 +42,20 @@ def per_layer(row, empty):
     return round((cost - empty["fragment"]["cost"]) / GROUP_LAYERS, 4)
 
 
-def measured(name, program, labels, options, say):
-    """The rows of one GPU, in the labels' order."""
+def measured(name, program, keys, options, say, known=None):
+    """The rows of one GPU, in the order of `keys` (keys_of())."""
     gpu = gpus.GPUS[name]
-    rows = compile_all(gpu, program, labels, options, lambda count: say(f"{gpu.title}: {count} of {len(labels)}"))
-    loops = [label for label in labels if rows[label].get("layers") == 0]
-    empty = compile_all(gpu, program, loops, [*options, "--empty-loops"]) if loops else {}
-    for label in labels:
+    rows = compile_all(gpu, program, keys, options, lambda count: say(f"{gpu.title}: {count} of {len(keys)}"), known)
+    hollow = [*options, "--empty-loops"]
+    loops = {label for label in keys if rows[label].get("layers") == 0}
+    loops = {label: key for label, key in keys_of(program, hollow).items() if label in loops} if loops else {}
+    empty = compile_all(gpu, program, loops, hollow, known=known)
+    for label in keys:
         row = rows[label]
         row["gpu"] = name
         if "fragment" in row:
             row["layer"] = {"cost": per_layer(row, empty.get(label))}
-    return [rows[label] for label in labels]
+    return [rows[label] for label in keys]
 
 
 def line_of(row):
@@ -104,12 +106,16 @@ def arguments():
     return given
 
 
-def chosen_labels(given, options):
-    """Raises Broken where nothing fits."""
+def chosen(given, options):
+    """{label: key}. Raises Broken where nothing fits."""
     if given.rows:
-        known = set(labels_of(given.program, options))
-        return [label for label in table_files.named_labels("before", "general", "lean") if label in known]
-    return labels_of(given.program, [*options, *(["--only", given.only] if given.only else [])])
+        return named(keys_of(given.program, options), "before", "general", "lean")
+    return keys_of(given.program, [*options, *(["--only", given.only] if given.only else [])])
+
+
+def named(keys, *columns):
+    """Of all keys those that these columns of rows.csv name."""
+    return {label: keys[label] for label in table_files.named_labels(*columns) if label in keys}
 
 
 def write(given, rows):
@@ -123,14 +129,15 @@ def write(given, rows):
 
 def main():
     given = arguments()
-    options = ["--choices", given.choices]
+    options = ["--choices", "all" if given.rows else given.choices]
     say = (lambda text: None) if given.print else (lambda text: print(text, file=sys.stderr, flush=True))
     try:
-        labels = chosen_labels(given, options)
+        keys = chosen(given, options)
         for mesa in sorted({gpus.GPUS[name].mesa for name in given.gpu}):
             gpus.build_folder(mesa)
         with ThreadPoolExecutor() as pool:
-            parts = list(pool.map(lambda name: measured(name, given.program, labels, options, say), given.gpu))
+            parts = list(pool.map(lambda name: measured(
+                name, given.program, keys, options, say, Known(gpus.cache() / f"costs-{name}.jsonl")), given.gpu))
     except gpus.NoCompilers as error:
         print(f"table: {error}", file=sys.stderr)
         return 77

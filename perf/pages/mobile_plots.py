@@ -5,7 +5,8 @@ from matplotlib.ticker import FuncFormatter, NullLocator
 from page_svg import INK, MUTED, NARROW, WIDE, plain_log_ticks, plain_number, plt, svg
 
 REST = "#c9ccd1"  # every variant without a name
-COLOURS = ("#1d6091", "#b5532a", "#5aa0a8", "#d79a55", "#6a5aa8", "#8a6d3b", "#3b7d4f", "#a83f6f", "#22262b", "#7f8c3a")
+COLOURS = ("#1d6091", "#b5532a", "#5aa0a8", "#d79a55", "#6a5aa8", "#8a6d3b", "#3b7d4f", "#a83f6f", "#22262b", "#7f8c3a",
+           "#4aa3df", "#e0846b", "#9b7fd4", "#6fbf8f")
 ARITHMETIC, TEXTURE, OTHER, BEFORE = "#1d6091", "#d79a55", "#8b8f96", "#b5532a"
 
 

@@ -41,6 +41,9 @@ Result<void> deviceCommand(const SessionOptions& options) {
                    name(test.format), test.usable ? "usable" : "unusable", test.maxFilterError,
                    test.maxFetchError, test.reason);
     }
+    const TableFilterTest& table = session->device.tableFilter();
+    fmt::print("  {:<12} {:<9} filter error {:.3g}: {}\n", "table",
+               table.usable ? "usable" : "unusable", table.maxError, table.reason);
     VolumeStatistics ct;
     ct.min = -1024.0;
     ct.max = 3071.0;

@@ -35,7 +35,7 @@ constexpr const char* kUsage =
     "                  variant there is\n"
     "  --empty-loops   loops alone, without what they do for layers\n"
     "  --half GROUPS   results of these groups in 16 bits (kHalf... of shader_variant.h)\n"
-    "  --list          labels on stdout, and nothing compiled\n";
+    "  --list          on stdout a key of each text, and its label; nothing is compiled\n";
 
 struct Request {
     CompileOptions compile;
@@ -151,7 +151,8 @@ int run(int argc, char** argv) {
     }
     if (request->list) {
         for (const ShaderVariant& variant : variants) {
-            std::printf("%s\n", labelOf(variant).c_str());
+            const Result<std::string> key = textKey(variant, request->compile);
+            std::printf("%s %s\n", key ? key->c_str() : "-", labelOf(variant).c_str());
         }
         return std::fflush(stdout) == 0 ? 0 : 1;
     }

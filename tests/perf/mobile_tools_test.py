@@ -27,7 +27,7 @@ ADRENO = ("FRAG shader: 283 inst, 91 nops, 192 non-nops, 8 mov, 9 cov, 448 dword
 PROGRAM = """#!/usr/bin/env python3
 import json, os, signal, sys, time
 if "--list" in sys.argv:
-    print("good/unroll4")
+    print("0123 good/unroll4 shells")
     sys.exit(0)
 for label in sys.stdin.read().splitlines():
     print(json.dumps({"variant": label, "layers": 4}), file=sys.stderr, flush=True)
@@ -78,12 +78,12 @@ class Runs(unittest.TestCase):
         self.program.write_text(PROGRAM)
         self.program.chmod(0o755)
         for patch in (mock.patch.object(gpus, "command", lambda gpu, program, words: ([program, *words], os.environ)),
-                      mock.patch.object(compile_run, "PATIENCE_S", 0.5)):
+                      mock.patch.object(compile_run, "PATIENCE_S", 5)):
             patch.start()
             self.addCleanup(patch.stop)
 
     def compiled(self, *labels):
-        return compile_run.compile_all(gpus.GPUS["g71"], self.program, labels)
+        return compile_run.compile_all(gpus.GPUS["g71"], self.program, {label: "-" for label in labels})
 
     def test_rows_come_in_spite_of_crashes_and_hangs(self):
         rows = self.compiled("a", "crash", "b", "hang", "c", "unknown", "silent")
@@ -91,7 +91,7 @@ class Runs(unittest.TestCase):
         for label in "abc":
             self.assertEqual(rows[label]["fragment"]["instructions"], 3124)
             self.assertNotIn("failed", rows[label])
-        for label, why in (("crash", "status -11"), ("hang", "took more than 0.5 s"), ("unknown", "no plan reaches"),
+        for label, why in (("crash", "status -11"), ("hang", "took more than 5 s"), ("unknown", "no plan reaches"),
                            ("silent", "gave no figures")):
             self.assertIn(why, rows[label]["failed"])
             self.assertNotIn("fragment", rows[label])
@@ -101,8 +101,21 @@ class Runs(unittest.TestCase):
         with self.assertRaisesRegex(compile_run.Broken, "Mali-G71: slabcast-compile: no context"):
             self.compiled("a")
 
-    def test_labels_are_asked_of_the_program(self):
-        self.assertEqual(compile_run.labels_of(self.program, []), ["good/unroll4"])
+    def test_labels_and_keys_are_asked_of_the_program(self):
+        self.assertEqual(compile_run.keys_of(self.program, []), {"good/unroll4 shells": "0123"})
+
+    def test_what_was_compiled_is_known_again_by_its_text(self):
+        file = self.program.parent / "costs.jsonl"
+        gpu, keys = gpus.GPUS["g71"], {"a": "1", "b": "2", "crash": "3"}
+        first = compile_run.compile_all(gpu, self.program, keys, known=compile_run.Known(file))
+        with file.open("a") as damaged:
+            damaged.write('{"cut sho')
+        self.program.write_text(PROGRAM.replace("3124 inst", "1 inst"))
+        again = compile_run.compile_all(gpu, self.program, {"renamed": "1", "b": "4", "crash": "3"},
+                                        known=compile_run.Known(file))
+        self.assertEqual(again["renamed"], {**first["a"], "variant": "renamed"})
+        self.assertEqual(again["b"]["fragment"]["instructions"], 7)  # another text
+        self.assertIn("failed", again["crash"])  # tried again
 
 
 class Files(unittest.TestCase):

@@ -11,7 +11,10 @@
 /// Which shader variants tests walk: those that plans reach, and pairs of axis values for the rest.
 namespace slabcast::test {
 
-using slabcast::reachableVariants;
+/// Of so many that every text is looked at.
+inline std::set<ShaderVariant> reachableVariants(int choices) {
+    return slabcast::reachableVariants(choices, true);
+}
 
 /// Values of two axes, by their places.
 struct AxisPair {

@@ -66,6 +66,8 @@ TEST(KnownDevices, FormatsAreAsWrongAsTheFilterMayBe) {
             EXPECT_EQ(test.format, static_cast<TexelFormat>(k));
             EXPECT_EQ(test.usable, test.format != TexelFormat::R16);
             EXPECT_NE(test.reason.find("assumed"), std::string::npos);
+            EXPECT_TRUE(assumedTableFilter(known).usable);
+            EXPECT_GE(assumedTableFilter(known).maxError, known.filterErrorPerAxis);
             const bool filtered = test.usable && !isExact(test.format);
             EXPECT_EQ(test.maxFilterError >= 3 * known.filterErrorPerAxis, filtered);
         }
