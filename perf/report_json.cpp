@@ -15,10 +15,14 @@ std::string keyOf(std::string_view words) {
 }
 
 Json toJson(const gl::Caps& caps) {
-    return {{"vendor", caps.vendor},
-            {"renderer", caps.renderer},
-            {"version", caps.driver},
-            {"software", caps.isSoftware}};
+    Json device = {{"vendor", caps.vendor},
+                   {"renderer", caps.renderer},
+                   {"version", caps.driver},
+                   {"software", caps.isSoftware}};
+    if (!caps.assumed.empty()) {
+        device["assumed"] = caps.assumed;
+    }
+    return device;
 }
 
 Json toJson(const VolumeInfo& info) {

@@ -20,7 +20,8 @@ struct RunIdentity {
 };
 
 /// The reports that a folder may hold; NAME.json is what a finished run wrote last.
-inline constexpr const char* kReports[] = {"sweep", "error", "skipbench", "edit", "stability"};
+inline constexpr const char* kReports[] = {"sweep", "error",     "skipbench",
+                                           "edit",  "stability", "model"};
 
 /// Whether a run may write into a folder, for a run that cannot go on: none may be there, unless
 /// the folder may be replaced (then what that run left is removed). Fails: FileUnwritable, naming

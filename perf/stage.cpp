@@ -133,19 +133,21 @@ Result<void> Stage::reclassify(Classification classification) {
     return setLook(scene().look().tf, classification);
 }
 
-Result<FramePlan> Stage::decide(const Settings& settings) {
-    std::vector<RatioMeasurement> measurements;
-    if (!settings.planes && !settings.layersPerPlane && scene().facts().anythingVisible) {
-        const ProgressLine line(watcher_, "measuring ratios on this device");
-        Result<std::vector<RatioMeasurement>> measured =
-            measureRatios(renderer_, scene(), settings, device_.caps(), views(0.0));
-        if (!measured) {
-            return tl::unexpected(measured.error());
-        }
-        measurements = std::move(*measured);
+bool leavesRatioOpen(const Settings& settings) {
+    return !settings.planes && !settings.layersPerPlane;
+}
+
+Result<std::vector<RatioMeasurement>> Stage::timeRatios(const Settings& settings) {
+    if (!leavesRatioOpen(settings) || !scene().facts().anythingVisible) {
+        return std::vector<RatioMeasurement>{};
     }
-    Result<FramePlan> made =
-        slabcast::plan(scene().facts(), settings, device_.caps(), measurements);
+    const ProgressLine line(watcher_, "measuring ratios on this device");
+    return measureRatios(renderer_, scene(), settings, device_.caps(), views(0.0));
+}
+
+Result<FramePlan> Stage::decide(const Settings& settings,
+                                std::span<const RatioMeasurement> measured) const {
+    Result<FramePlan> made = slabcast::plan(scene().facts(), settings, device_.caps(), measured);
     if (made && watcher_.say) {
         const std::vector<ReasonText> texts = explained(*made);
         for (std::size_t k = 0; k < texts.size(); ++k) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/draw/renderer.h"
@@ -52,10 +53,16 @@ public:
     /// Of the picture, from the next prepare() on.
     void resize(glm::ivec2 size) { desc_.size = size; }
 
-    /// Decides the plan; measures ratios first where the settings leave the ratio open. What the
-    /// plan warns of is said.
-    Result<FramePlan> decide(const Settings& settings);
-    /// The plan without measuring: contract as slabcast::plan() without measurements.
+    /// What ratios take here, by measureRatios(); nothing where the settings name one, or nothing
+    /// is visible. Draws and compiles all of them. Fails: as that.
+    Result<std::vector<RatioMeasurement>> timeRatios(const Settings& settings);
+
+    /// The plan, and what it warns of is said. It goes by `measured` where the settings leave the
+    /// ratio open, and measures nothing: without, two runs decide alike. Fails: as
+    /// slabcast::plan().
+    Result<FramePlan> decide(const Settings& settings,
+                             std::span<const RatioMeasurement> measured = {}) const;
+    /// The same without a word.
     Result<FramePlan> plan(const Settings& settings) const;
 
     /// Renderer::prepare(), and a framebuffer of the plan's format.

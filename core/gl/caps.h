@@ -15,6 +15,9 @@ struct Caps {
     std::string vendor;
     std::string renderer;
     std::string driver; // the whole GL_VERSION line, driver version included
+    /// The known device (core/scene/known_devices.h) whose abilities these are, though another
+    /// draws; empty where they were asked and tested.
+    std::string assumed;
 
     std::int64_t maxTextureSize = 0;
     std::int64_t maxTexture3DSize = 0;

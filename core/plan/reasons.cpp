@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "core/plan/decisions/decision.h"
+#include "core/plan/known_gpus.h"
 #include "core/plan/settings_check.h"
 
 namespace slabcast {
@@ -37,8 +38,7 @@ constexpr ReasonWords kWords[] = {
     {ReasonId::RatioAsked, "ratio {ratio 0}", "asked for"},
     {ReasonId::RatioOfFewerPlanes, "ratio {ratio 0}",
      "fewer planes than asked for hold all layers"},
-    {ReasonId::RatioUnmeasured, "ratio {ratio 0}",
-     "nothing was measured on this device: a middle ratio"},
+    {ReasonId::RatioUnmeasured, "ratio {ratio 0}", "nothing was measured: {rule 3}"},
     {ReasonId::RatioFastest, "ratio {ratio 0}",
      "fastest of those measured on this device: {measured 0}"},
     {ReasonId::ClassificationOfIntervals, "classification {classification 0}",
@@ -159,6 +159,19 @@ std::string costOfLooks(const double* numbers) {
                                                         : ", not on this device)");
 }
 
+std::string ruleOfRatio(const double* numbers) {
+    switch (static_cast<RatioRule>(numbers[0])) {
+    case RatioRule::WholeRays:
+        return "a software driver loops over whole rays, which says nothing of a GPU";
+    case RatioRule::Modelled:
+        return std::string("a model's best on ") +
+               kKnownGpus[static_cast<std::size_t>(numbers[1])].title + ", for volumes like this";
+    case RatioRule::Middle:
+        break;
+    }
+    return "the middle of the range that is best on phones";
+}
+
 std::string measuredRatios(const FramePlan& plan) {
     std::string all;
     for (const RatioMeasurement& one : plan.measured) {
@@ -192,6 +205,7 @@ constexpr struct {
                  const double* n) { return std::string(name(static_cast<BlendOrder>(*n))); }},
     {"occupancy", [](const FramePlan&, const double* n) { return occupancy(n); }},
     {"looks", [](const FramePlan&, const double* n) { return costOfLooks(n); }},
+    {"rule", [](const FramePlan&, const double* n) { return ruleOfRatio(n); }},
     {"measured", [](const FramePlan& plan, const double*) { return measuredRatios(plan); }},
 };
 

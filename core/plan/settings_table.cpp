@@ -151,8 +151,9 @@ constexpr Setting kTable[] = {
         .high = kMaxTotalLayers,
         .unset = "auto",
         .excludes = "layers-per-plane",
-        .help = "proxy planes: 1 is ray casting, as many as layers is slicing; auto takes the "
-                "fastest of several, measured"},
+        .help =
+            "proxy planes: 1 is ray casting, as many as layers is slicing; auto goes by device, "
+            "or by what was measured there"},
        SLABCAST_MEMBER(planes)),
     of({.name = "layers-per-plane",
         .group = kLayers,
@@ -161,8 +162,8 @@ constexpr Setting kTable[] = {
         .high = kMaxTotalLayers,
         .unset = "auto",
         .excludes = "planes",
-        .help = "1 is slicing, more than there are is ray casting; auto takes the fastest of "
-                "several, measured"},
+        .help = "1 is slicing, more than there are is ray casting; auto goes by device, or by what "
+                "was measured there"},
        SLABCAST_MEMBER(layersPerPlane)),
     of({.name = "lattice",
         .group = kLayers,

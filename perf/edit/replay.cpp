@@ -20,7 +20,10 @@ Result<FramePlan> decide(Stage& stage, const EditDesc& desc) {
         return tl::unexpected(first.error());
     }
     stage.show(std::move(*first));
-    Result<FramePlan> decided = stage.decide(settings);
+    const Result<std::vector<RatioMeasurement>> ratios =
+        desc.ratios ? desc.ratios(stage, settings) : stage.timeRatios(settings);
+    const Result<FramePlan> decided =
+        ratios ? stage.decide(settings, *ratios) : tl::unexpected(ratios.error());
     FramePlan nothing;
     nothing.look = stage.scene().lookGeneration();
     nothing.drawsNothing = true; // lets the stage's textures go, where ratios were measured

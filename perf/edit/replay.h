@@ -1,10 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/base/error.h"
-#include "core/plan/settings.h"
+#include "core/plan/frame_plan.h"
 #include "core/skip/live_skip.h"
 #include "perf/edit/writer.h"
 
@@ -13,11 +15,16 @@ namespace slabcast {
 class Stage;
 struct RunInfo;
 
+/// What ratios take in a stage's scene where the settings leave them open.
+using RatioSource =
+    std::function<Result<std::vector<RatioMeasurement>>(Stage& stage, const Settings& settings)>;
+
 /// What is edited, and how it is drawn meanwhile.
 struct EditDesc {
     EditScript script;
     std::string origin = "usual";   // of the script: usual, interpolation or script; for the report
     Settings settings;              // the ratio is decided once, under the script's first TF
+    RatioSource ratios{};           // that it goes by; empty: measured now
     LiveOptions live;               // how empty space is skipped meanwhile
     double turnDegrees = 0.0;       // of the volume, over all frames
     double workBudgetMs = 2.0;      // for a frame's share of rebuilding, at most

@@ -1,5 +1,9 @@
 #include "perf/error/scene_key.h"
 
+#include "perf/report_json.h"
+#include "perf/settings_json.h"
+#include "perf/stage.h"
+
 namespace slabcast {
 
 std::string fingerprint(std::span<const std::byte> bytes) {
@@ -36,6 +40,23 @@ Json transferKey(const TransferFunction& tf) {
 
 Json statisticsKey(const VolumeStatistics& s) {
     return Json::list({s.min, s.max, s.mean, s.standardDeviation, Json::listOf(s.histogram)});
+}
+
+Json frameKey(const gl::Caps& caps, const Scene& scene, const StageDesc& drawn) {
+    const Texels& texels = scene.texels();
+    Json key = conditionsOf(drawn);
+    key.update({{"device", toJson(caps)},
+                {"extensions", Json::listOf(caps.extensions)},
+                {"voxels", fingerprint(texels.data)},
+                {"texels", Json::list({name(texels.format), texels.valueScale, texels.valueBias})},
+                {"placement", placementKey(scene.geometry())},
+                {"transfer_function", transferKey(scene.look().tf)},
+                {"stereo", drawn.stereoIpdMm ? Json(*drawn.stereoIpdMm) : Json()},
+                {"background",
+                 drawn.background
+                     ? Json::list({drawn.background->x, drawn.background->y, drawn.background->z})
+                     : Json()}});
+    return key;
 }
 
 } // namespace slabcast

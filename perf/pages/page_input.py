@@ -23,13 +23,15 @@ def section(raw, name):
 
 
 def read(folder, name, rows, subcommand):
-    """The object in DIR/name, which holds a list `rows` that is not empty. Raises BadInput."""
+    """The object in DIR/name, which holds a list `rows` that is not empty. `subcommand`: of slabcast, or the path of a
+    script, that makes it. Raises BadInput."""
     path = Path(folder) / name
-    again = f"run `slabcast {subcommand}` again"
+    program = subcommand if "/" in subcommand else f"slabcast {subcommand}"
+    again = f"run `{program}` again"
     try:
         raw = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
-        raise BadInput(f"{path}: no such file; `slabcast {subcommand} --out {folder}` makes it") from None
+        raise BadInput(f"{path}: no such file; `{program} --out {folder}` makes it") from None
     except OSError as error:
         raise BadInput(f"{path}: {error.strerror}; check the path and its permissions") from None
     except ValueError as error:

@@ -52,6 +52,11 @@ class Row:
         """(low, high) of that; None each where not known."""
         return tuple(number(self.raw.get(f"speedup_over_{over}_{end}")) for end in ("low", "high"))
 
+    def model(self, gpu):
+        """What a model says of this ratio on a GPU: {"frame_ms": ...}; None where it says nothing."""
+        said = (self.raw.get("model") or {}).get(gpu)
+        return said if isinstance(said, dict) and (number(said.get("frame_ms")) or 0) > 0 else None
+
     @property
     def coverage(self):
         return number(self.raw.get("speedup_coverage"))
@@ -84,6 +89,13 @@ class Sweep:
     def ratios(self):
         """Every (planes, layers) once, from ray casting to slicing."""
         return sorted({row.ratio for row in self.rows}, key=lambda r: (r[0], -r[1]))
+
+    @property
+    def modelled(self):
+        """The series that is drawn unless told otherwise, if a model says anything of it, and the GPUs that it knows."""
+        last = self.series[-1] if self.series else None
+        gpus = sorted({gpu for row in last.rows for gpu in (row.raw.get("model") or {}) if row.model(gpu)}) if last else []
+        return last, gpus
 
     def section(self, name):
         return page_input.section(self.raw, name)

@@ -125,6 +125,34 @@ def paired_words(sweep):
             "drifting machine hits both. " + coverage_words(next((row.coverage for row in sweep.rows), None)))
 
 
+def model_table(sweep):
+    """What a model finds best on each GPU, and what holds it back there."""
+    series, gpus = sweep.modelled
+    rows = []
+    for gpu in gpus:
+        best = min((row for row in series.rows if row.model(gpu)), key=lambda row: row.model(gpu)["frame_ms"])
+        said = best.model(gpu)
+        low, high = (number(said.get(end)) or said["frame_ms"] for end in ("low_ms", "high_ms"))
+        rows.append([esc(said.get("device", gpu)), best.label, f"{figures(said['frame_ms'])} ms",
+                     f"{figures(low)} – {figures(high)} ms", esc(said.get("limit", "")),
+                     f"{figures(number(said.get('divergence_ms')) or 0)} ms"])
+    note = ("<strong>A model, not a measurement</strong>: work that was counted in this run, times what each GPU\u2019s own "
+            "compiler says of the shader that it would be given, over what is published of the GPU; nothing is fitted. "
+            "The range is of what sources differ in, and of an instruction cache whose size is not published. It knows "
+            "no cache misses, no other apps and no heat. perf/README.md says what it was held against.")
+    return table(["Model of", "best ratio", "frame", "range", "held back by", "of it divergence"], rows) + \
+        f'<p class="note">{note}</p>'
+
+
+def model_section(sweep):
+    """Nothing where no compiler's figures are there for these shaders."""
+    if not sweep.modelled[1]:
+        return []
+    return [section("Other GPUs, by a model", figure(
+        plots.model_times, sweep, "Model: frame times of phones and headsets that were not at hand, for "
+        f"{esc(sweep.modelled[0].label)}; in grey what was measured here, which no model is fitted to.") + model_table(sweep))]
+
+
 def all_rows(sweep):
     head = ["planes × layers", "skipping", "form", "tight", "median ms", "min – max", "p10 – p90", "n", "fps",
             "× slicing", "× the same drawn plainly", "fragments", "layers", "skipped", "volume fetches", "skip fetches", "compile ms", "first frame ms", "variant"]
@@ -190,6 +218,7 @@ def page(sweep):
             + paper_table(sweep)),
         section("Work per frame", figure(
             plots.counters, sweep, "What the shader did. Counts, not times: they depend on the picture, not on the device’s speed.")),
+        *model_section(sweep),
         section("Memory and speed", memory_and_speed(sweep)),
         section("Compiling the variants", figure(
             plots.compile_times, sweep, "Compile and link of each variant’s program, by the host’s clock until the driver says that it is "

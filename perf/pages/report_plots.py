@@ -9,6 +9,7 @@ from report_data import COUNTERS, PAPER_FIGURES, number
 PLAIN = ("#b5532a", "#d79a55", "#8a6d3b")
 SKIPPING = ("#1d6091", "#5aa0a8", "#6a5aa8")
 PAPER = "#8b8f96"
+MODEL = "#7a3e8f"
 
 
 def _colours(sweep):
@@ -102,6 +103,42 @@ def speed_ups(sweep, narrow):
     axes.set_ylim(bottom=0, top=max(axes.get_ylim()[1], reached * 1.15))
     axes.set_ylabel("speed, slicing = 1")
     return svg(figure, f"speed{'-n' if narrow else ''}", _key(sweep))
+
+
+def _within(value, row, end):
+    """An end of a model's range; the value where it is not known."""
+    return number(row.get(end)) or value
+
+
+def model_times(sweep, narrow):
+    """A panel per GPU: the model's frame time with its range, and the measured one of this device in grey."""
+    series, gpus = sweep.modelled
+    if not gpus:
+        return None
+    columns = 1 if narrow else 2
+    lines = -(-len(gpus) // columns)
+    figure, grid = plt.subplots(lines, columns, figsize=(NARROW, 2.3 * lines + 0.6) if narrow else
+                                (WIDE, 2.2 * lines + 0.5), squeeze=False)
+    panels = list(grid.flat)
+    for axes in panels[len(gpus):]:
+        axes.set_visible(False)
+    for k, (axes, gpu) in enumerate(zip(panels, gpus)):
+        rows = [row for row in series.rows if row.model(gpu)]
+        places = _ratio_axis(axes, sweep, 4 if narrow else 7, label=k >= len(gpus) - columns)
+        x = [places[row.ratio] for row in rows]
+        y = [number(row.model(gpu)["frame_ms"]) for row in rows]
+        axes.fill_between(x, [_within(value, row.model(gpu), "low_ms") for value, row in zip(y, rows)],
+                          [_within(value, row.model(gpu), "high_ms") for value, row in zip(y, rows)],
+                          color=MODEL, alpha=0.18, lw=0)
+        axes.plot(x, y, color=MODEL, lw=1.6, ls=(0, (4, 2)), marker="o", ms=4, mfc="white")
+        axes.plot([places[row.ratio] for row in series.rows], [row.median_ms for row in series.rows],
+                  color=PAPER, lw=1.2, marker="o", ms=3)
+        _log_ms_axis(axes)
+        axes.set_ylabel("ms (log)")
+        axes.set_title(f"model: {rows[0].model(gpu).get('device', gpu)}")
+    return svg(figure, f"model{'-n' if narrow else ''}",
+               [("a model, not measured, with its range", MODEL, "o", True, "4 2"),
+                ("measured on this run\u2019s device", PAPER, "o", False, "")])
 
 
 def counters(sweep, narrow):

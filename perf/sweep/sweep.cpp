@@ -5,6 +5,7 @@
 #include "core/plan/settings_table.h"
 #include "perf/error/scene_key.h"
 #include "perf/json.h"
+#include "perf/model/predict_json.h"
 #include "perf/number.h"
 #include "perf/race.h"
 #include "perf/run_store.h"
@@ -37,9 +38,26 @@ std::string twoDigits(std::size_t index) {
     return (index < 10 ? "0" : "") + std::to_string(index);
 }
 
+/// Work of a row, and what a model makes of it for other GPUs; null where it cannot be counted.
+struct RowWork {
+    Json counters, model;
+};
+RowWork workOf(Stage& stage, const FramePlan& plan, const Settings& settings) {
+    const Result<std::vector<PixelWork>> pixels = stage.workPerPixel(plan);
+    if (!pixels) {
+        return {};
+    }
+    WorkCounters counters;
+    for (const PixelWork& pixel : *pixels) {
+        counters += pixel;
+    }
+    const Result<std::vector<Prediction>> model = predictions(stage, settings, *pixels);
+    return {toJson(Result<WorkCounters>(counters)), model ? toJson(*model) : Json()};
+}
+
 /// What is said of a row before it races: its plan, its first frame's time, work and thumbnail.
-Result<Json> described(Stage& stage, const FramePlan& plan, const std::string& thumbnailFile,
-                       ReportFolder& folder) {
+Result<Json> described(Stage& stage, const FramePlan& plan, const Settings& settings,
+                       const std::string& thumbnailFile, ReportFolder& folder) {
     if (Result<void> ready = stage.prepare(plan); !ready) {
         return tl::unexpected(ready.error());
     }
@@ -53,6 +71,7 @@ Result<Json> described(Stage& stage, const FramePlan& plan, const std::string& t
         !saved) {
         return tl::unexpected(saved.error());
     }
+    RowWork work = workOf(stage, plan, settings);
     return Json{{"label", std::to_string(plan.planes) + "x" + std::to_string(plan.layersPerPlane)},
                 {"classify", name(plan.variant.classification)},
                 {"termination",
@@ -64,7 +83,8 @@ Result<Json> described(Stage& stage, const FramePlan& plan, const std::string& t
                 {"form", plan.variant.unroll > 0 ? "unrolled" : "loop"},
                 {"skip", name(plan.skip)},
                 {"tighten", plan.tighten},
-                {"counters", toJson(stage.countWork(plan))},
+                {"counters", std::move(work.counters)},
+                {"model", std::move(work.model)},
                 {"compile_ms", stage.renderer().compileMs(plan.variant)},
                 {"first_frame_ms", *firstMs},
                 {"variant", name(plan.variant)},
@@ -98,22 +118,10 @@ Json header(const Stage& stage, int rounds, const RunInfo& run) {
 
 /// All that a row depends on, and which rows there are.
 Json keyOf(const Stage& stage, const SweepDesc& desc, const RunInfo& run) {
-    const Scene& scene = stage.scene();
-    const StageDesc& o = stage.desc();
-    const Texels& texels = scene.texels();
-    Json key = conditionsOf(o);
-    key.update(
-        {{"commit", run.commit},
-         {"device", toJson(stage.caps())},
-         {"voxels", fingerprint(texels.data)},
-         {"texels", Json::list({name(texels.format), texels.valueScale, texels.valueBias})},
-         {"placement", placementKey(scene.geometry())},
-         {"transfer_function", transferKey(scene.look().tf)},
-         {"stereo", o.stereoIpdMm ? Json(*o.stereoIpdMm) : Json()},
-         {"background",
-          o.background ? Json::list({o.background->x, o.background->y, o.background->z}) : Json()},
-         {"layers_per_plane", Json::listOf(desc.layersPerPlane)},
-         {"frames", desc.rounds}});
+    Json key = frameKey(stage.caps(), stage.scene(), stage.desc());
+    key.update({{"commit", run.commit},
+                {"layers_per_plane", Json::listOf(desc.layersPerPlane)},
+                {"frames", desc.rounds}});
     return key;
 }
 
@@ -128,6 +136,24 @@ public:
         return describe(rows).and_then([&](Json described) { return timed(std::move(described)); });
     }
 
+    /// Of the rows that are drawn as the stage's own settings would be at their ratio.
+    std::vector<RatioMeasurement> ratios() const {
+        std::vector<RatioMeasurement> found;
+        for (std::size_t k = 0; k < plans_.size(); ++k) {
+            const FramePlan& row = plans_[k];
+            Settings settings = stage_.desc().settings;
+            settings.planes.reset();
+            settings.layersPerPlane = row.layersPerPlane;
+            const bool unrolled = row.variant.unroll > 0;
+            settings.form = unrolled ? SegmentForm::Unrolled : SegmentForm::Loop;
+            const Result<FramePlan> own = stage_.plan(settings);
+            if (own && *own == row) {
+                found.push_back({{row.planes, row.layersPerPlane, settings.form}, medians_[k]});
+            }
+        }
+        return found;
+    }
+
 private:
     Result<Json> describe(const std::vector<SweepRow>& rows) {
         Json all = Json::list();
@@ -136,7 +162,7 @@ private:
             if (!plan) {
                 return tl::unexpected(plan.error());
             }
-            const Result<Json> one = rowOf(*plan, all.size(), rows.size());
+            const Result<Json> one = rowOf(*plan, row.settings, all.size(), rows.size());
             if (!one) {
                 return one;
             }
@@ -148,7 +174,8 @@ private:
     }
 
     /// From the store, or as it is.
-    Result<Json> rowOf(const FramePlan& plan, std::size_t index, std::size_t count) {
+    Result<Json> rowOf(const FramePlan& plan, const Settings& settings, std::size_t index,
+                       std::size_t count) {
         const std::string id = "row " + twoDigits(index);
         const std::string picture = std::string(kSweepThumbnails) + "/" + twoDigits(index) + ".png";
         if (const Json* kept = store_.find(id);
@@ -158,10 +185,11 @@ private:
         progress_.show("row " + std::to_string(index + 1) + " of " + std::to_string(count) + ": " +
                        std::to_string(plan.layersPerPlane) + " layers per plane, skip " +
                        name(plan.skip) + ", " + (plan.tighten ? "tight planes" : "10-gons"));
-        return described(stage_, plan, picture, folder_).and_then([&](Json row) -> Result<Json> {
-            Json piece = {{"id", id}, {"row", std::move(row)}};
-            return store_.add(piece).map([&] { return std::move(piece); });
-        });
+        return described(stage_, plan, settings, picture, folder_)
+            .and_then([&](Json row) -> Result<Json> {
+                Json piece = {{"id", id}, {"row", std::move(row)}};
+                return store_.add(piece).map([&] { return std::move(piece); });
+            });
     }
 
     Result<Json> timed(Json rows) {
@@ -176,6 +204,9 @@ private:
         return race(stage_, racers, {.id = "race", .rounds = desc_.rounds, .show = show}, store_)
             .map([&](const Laps& laps) {
                 addTimes(rows, places_, laps);
+                for (const std::vector<double>& times : laps) {
+                    medians_.push_back(summarise(times).median);
+                }
                 return std::move(rows);
             });
     }
@@ -187,6 +218,7 @@ private:
     ProgressLine progress_;
     std::vector<FramePlan> plans_;
     std::vector<SweepPlace> places_;
+    std::vector<double> medians_; // ms, of each row
 };
 
 } // namespace
@@ -215,7 +247,8 @@ std::vector<SweepRow> sweepRows(const Settings& settings, const SceneFacts& fact
     return rows;
 }
 
-Result<void> sweep(Stage& stage, const SweepDesc& desc, const RunInfo& run, ReportFolder& folder) {
+Result<std::vector<RatioMeasurement>> sweep(Stage& stage, const SweepDesc& desc, const RunInfo& run,
+                                            ReportFolder& folder) {
     SLABCAST_EXPECTS(desc.rounds >= 1, desc.rounds);
     Result<RunStore> store =
         RunStore::open(folder, {"sweep", stage.info().name, run.command, keyOf(stage, desc, run)},
@@ -223,17 +256,17 @@ Result<void> sweep(Stage& stage, const SweepDesc& desc, const RunInfo& run, Repo
     if (!store) {
         return tl::unexpected(store.error());
     }
-    const Result<Json> rows =
-        SweepRun(stage, desc, folder, *store)
-            .measure(sweepRows(stage.desc().settings, stage.scene().facts(), desc.layersPerPlane));
+    SweepRun measuring(stage, desc, folder, *store);
+    const Result<Json> rows = measuring.measure(
+        sweepRows(stage.desc().settings, stage.scene().facts(), desc.layersPerPlane));
     if (!rows) {
         return tl::unexpected(rows.error());
     }
     Json report = header(stage, desc.rounds, run);
     report["rows"] = *rows;
-    return folder.write("sweep.csv", sweepCsv(*rows)).and_then([&] {
-        return folder.write("sweep.json", report.dump(2) + "\n");
-    });
+    return folder.write("sweep.csv", sweepCsv(*rows))
+        .and_then([&] { return folder.write("sweep.json", report.dump(2) + "\n"); })
+        .map([&] { return measuring.ratios(); });
 }
 
 } // namespace slabcast

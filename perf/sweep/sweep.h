@@ -20,9 +20,11 @@ inline constexpr const char* kSweepThumbnails = "thumbnails";
 /// Measures every ratio under the stage's settings: the plain stack, then what skipping and tight
 /// planes add to it. All rows race (race.h): what a busy machine does hits all alike. Writes
 /// sweep.json and sweep.csv, and a thumbnail per row; a run cut short goes on after its last whole
-/// round. Fails: as Stage::prepare(), Stage::drawTimed(), RunStore::open() and the folder.
-/// Tested by: cli_reports_test.py
-Result<void> sweep(Stage& stage, const SweepDesc& desc, const RunInfo& run, ReportFolder& folder);
+/// round. Returns what ratios take, the medians, of those rows that are drawn as the stage's own
+/// settings are at their ratio. Fails: as Stage::prepare(), Stage::drawTimed(), RunStore::open()
+/// and the folder. Tested by: cli_reports_test.py
+Result<std::vector<RatioMeasurement>> sweep(Stage& stage, const SweepDesc& desc, const RunInfo& run,
+                                            ReportFolder& folder);
 
 /// One row: how it is drawn, and which of the series it is of, the plain stack being the first.
 struct SweepRow {

@@ -32,7 +32,14 @@ constexpr CsvColumn kColumns[] = {
     {"speedup_over_plain_slicing", "/speedup_over_plain_slicing"},
     {"speedup_over_plain_slicing_low", "/speedup_over_plain_slicing_low"},
     {"speedup_over_plain_slicing_high", "/speedup_over_plain_slicing_high"},
-    {"speedup_coverage", "/speedup_coverage"}};
+    {"speedup_coverage", "/speedup_coverage"},
+    {"model_g71_ms", "/model/g71/frame_ms"},
+    {"model_g52_ms", "/model/g52/frame_ms"},
+    {"model_g57_ms", "/model/g57/frame_ms"},
+    {"model_adreno630_ms", "/model/adreno630/frame_ms"},
+    {"model_adreno650_ms", "/model/adreno650/frame_ms"},
+    {"model_adreno660_ms", "/model/adreno660/frame_ms"},
+    {"model_adreno740_ms", "/model/adreno740/frame_ms"}};
 
 /// The first row of a series with so many layers per plane.
 std::optional<std::size_t> rowAt(std::span<const SweepPlace> places, int series, int layers) {

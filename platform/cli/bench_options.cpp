@@ -90,6 +90,7 @@ void bindError(Command& command, ErrorOptions& o) {
     o.size = {256, 256};
     bindCamera(command, o);
     bindTransfer(command, o);
+    bindDevice(command, o.session);
     bindGrid(command, o.axes);
     bindSettingsBut(command, o.settings,
                     {"layer-spacing", "layers", "planes", "layers-per-plane", "classify", "target",
@@ -138,6 +139,7 @@ void bindSkipbench(Command& command, SkipbenchOptions& o) {
     o.size = {256, 256};
     bindCamera(command, o);
     bindTransfer(command, o);
+    bindDevice(command, o.session);
     bindSetting(command, o.settings, "space");
     bindSetting(command, o.settings, "partition-budget");
     command.checks.emplace_back([&o](const Given& given) -> Result<void> {
@@ -150,6 +152,35 @@ void bindSkipbench(Command& command, SkipbenchOptions& o) {
     });
     command.footer = "Example: which way to skip suits this device; look at bench/report.html\n"
                      "  slabcast skipbench skull.nrrd phantom:gap --quick --out bench";
+}
+
+void bindModel(Command& command, ModelOptions& o) {
+    bindReportFolder(command, o.folder, "model.json; made where it is missing");
+    addList(command,
+            {.flag = "--layers",
+             .help = "layers per plane; 0 is all: ray casting",
+             .word = "N,...",
+             .usually = fmt::format("{},0", fmt::join(kUnrollLengths, ",")),
+             .group = "What is varied"},
+            o.layersPerPlane, numberParser<int>(0, kMaxTotalLayers),
+            fmt::format("whole numbers from 0 to {}", kMaxTotalLayers));
+    bindInput(command, o.input);
+    bindTexture(command, o.input);
+    o.stereoIpdMm = 63.0;
+    o.fovDegrees = 90.0;
+    o.camera.distanceRadii = 2.0;
+    bindCamera(command, o);
+    bindTransfer(command, o);
+    bindSettingsBut(command, o.settings, {"layers", "planes", "layers-per-plane"});
+    checkSkipping(command, o);
+    command.checks.emplace_back([](const Given& given) -> Result<void> {
+        return given("--size") ? fail(ErrorCode::InvalidArgument,
+                                      "--size: has no effect here: sizes are the headsets' own")
+                               : Result<void>{};
+    });
+    command.footer = "Example: what a skull takes on Quest 2 and Quest 3, by a model; nothing of "
+                     "it is measured\n"
+                     "  slabcast model skull.nrrd --out model";
 }
 
 } // namespace slabcast

@@ -6,14 +6,17 @@
 
 namespace slabcast {
 
-Result<void> deviceCommand() {
-    const Result<Session> session = openSession();
+Result<void> deviceCommand(const SessionOptions& options) {
+    const Result<Session> session = openSession(options);
     if (!session) {
         return tl::unexpected(session.error());
     }
     const gl::Caps& caps = session->device.caps();
     fmt::print("{}\n  vendor     {}\n  driver     {}\n  context    {}\n", caps.renderer,
                caps.vendor, caps.driver, session->context.description());
+    if (!caps.assumed.empty()) {
+        fmt::print("  assumed    {}: taken from a table, not asked and tested\n", caps.assumed);
+    }
     fmt::print("  software   {}\n", caps.isSoftware ? "yes: its times are not a headset's" : "no");
     fmt::print("  3D limit   {} texels along an edge\n  2D limit   {}\n  uniform block {} bytes\n",
                caps.maxTexture3DSize, caps.maxTextureSize, caps.maxUniformBlockSize);
@@ -31,12 +34,16 @@ Result<void> deviceCommand() {
     for (const auto& feature : features) {
         fmt::print("  {:<3} {}\n", feature.has ? "yes" : "no", feature.what);
     }
-    fmt::print("texel formats, by drawing and reading back:\n");
+    fmt::print("texel formats, {}:\n",
+               caps.assumed.empty() ? "by drawing and reading back" : "assumed");
     for (const TexelFormatTest& test : session->device.formats()) {
         fmt::print("  {:<12} {:<9} filter error {:.3g}, fetch error {:.3g}: {}\n",
                    name(test.format), test.usable ? "usable" : "unusable", test.maxFilterError,
                    test.maxFetchError, test.reason);
     }
+    const TableFilterTest& table = session->device.tableFilter();
+    fmt::print("  {:<12} {:<9} filter error {:.3g}: {}\n", "table",
+               table.usable ? "usable" : "unusable", table.maxError, table.reason);
     VolumeStatistics ct;
     ct.min = -1024.0;
     ct.max = 3071.0;

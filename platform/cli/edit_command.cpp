@@ -7,6 +7,7 @@
 #include "platform/cli/commands.h"
 #include "platform/cli/edit_script.h"
 #include "platform/cli/open_stage.h"
+#include "platform/cli/ratio_file.h"
 #include "platform/cli/report_files.h"
 #include "platform/cli/skip_options.h"
 #include "platform/cli/transfer_choice.h"
@@ -47,6 +48,12 @@ EditDesc descOf(const EditOptions& options, EditScript script) {
                             : options.interpolate       ? "interpolation"
                                                         : "usual",
                   .settings = options.settings,
+                  .ratios =
+                      [](Stage& stage, const Settings& settings) {
+                          return ratiosOf(stage, settings).map([](FoundRatios found) {
+                              return std::move(found.ratios);
+                          });
+                      },
                   .live = liveOptions(options),
                   .turnDegrees = options.turnDegrees,
                   .workBudgetMs = options.workBudgetMs,

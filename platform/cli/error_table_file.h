@@ -7,9 +7,8 @@
 
 namespace slabcast {
 
-// What `slabcast error` measured on this device, for `slabcast render --target-error`: in
-// `slabcast/error-table-DEVICE.json` in the user's folder for caches (XDG_CACHE_HOME, else
-// ~/.cache).
+// What `slabcast error` measured on this device, for `slabcast render --target-error`: kept by
+// device_cache.h as error-table.
 
 /// Empty where there is no file. Fails: InvalidArgument (neither XDG_CACHE_HOME nor HOME is set),
 /// FileUnreadable (also of what refreshErrorTable() did not write).

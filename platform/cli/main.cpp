@@ -51,7 +51,9 @@ int run(int argc, char** argv) {
     ErrorOptions error;
     SkipbenchOptions skipbench;
     EditOptions edit;
+    ModelOptions model;
     InputOptions info;
+    SessionOptions device;
     const std::string typed = commandLine(argc, argv);
     Command commands[] = {
         {.name = "render", .help = "Draws a picture", .run = [&] { return renderCommand(render); }},
@@ -70,6 +72,9 @@ int run(int argc, char** argv) {
         {.name = "edit",
          .help = "Replays edits of the transfer function and times every frame",
          .run = [&] { return editCommand(edit, typed); }},
+        {.name = "model",
+         .help = "Predicts frame times of headsets that are not at hand, by a model",
+         .run = [&] { return modelCommand(model, typed); }},
         {.name = "info",
          .help = "Tells what a volume is and what drawing it takes",
          .run = [&] { return infoCommand(info); }},
@@ -77,7 +82,7 @@ int run(int argc, char** argv) {
          .help = "Tells what the GPU can do, which texel formats were chosen and why",
          .footer = "Example: what a headset without float extensions would get\n"
                    "  SLABCAST_MASK_EXTENSIONS=mobile-strict slabcast device",
-         .run = deviceCommand},
+         .run = [&] { return deviceCommand(device); }},
     };
     bindRender(commands[0], render);
     bindSweep(commands[1], sweep);
@@ -85,7 +90,9 @@ int run(int argc, char** argv) {
     bindError(commands[3], error);
     bindSkipbench(commands[4], skipbench);
     bindEdit(commands[5], edit);
-    bindInfo(commands[6], info);
+    bindModel(commands[6], model);
+    bindInfo(commands[7], info);
+    bindDevice(commands[8], device);
     const ParsedCommand parsed = parseCommandLine(commands, argc, argv);
     return parsed.command == nullptr ? parsed.status : finished(parsed.command->run());
 }

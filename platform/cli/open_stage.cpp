@@ -118,7 +118,7 @@ Result<Stage> openStage(const Session& session, const InputOptions& input, const
 }
 
 Result<OpenStage> openStage(const SceneOptions& options) {
-    Result<Session> session = openSession();
+    Result<Session> session = openSession(options.session);
     if (!session) {
         return tl::unexpected(session.error());
     }

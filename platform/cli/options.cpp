@@ -131,7 +131,8 @@ void bindOutputs(Command& command, RenderOptions& o) {
     addNumber(command,
               {.flag = "--frames",
                .help = "turn the volume once around in N frames and time them, for --stats; the "
-                       "first is written",
+                       "first is written. Ratios that are left open are measured before, once per "
+                       "device, scene and settings; of a single frame they go by device alone",
                .word = "N",
                .usually = fmt::format("{}", o.frames),
                .group = group,
@@ -210,6 +211,7 @@ void bindStability(Command& command, StabilityOptions& o) {
                .group = group},
               o.family, families)
         .word = "FAMILY";
+    bindDevice(command, o.session);
     addFlag(command,
             {.flag = "--reduced",
              .help = "fewer sizes, views and repetitions; the same bounds",

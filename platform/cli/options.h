@@ -21,6 +21,7 @@ namespace slabcast {
 
 /// What render and sweep have in common: the scene, the camera and the settings of the plan.
 struct SceneOptions {
+    SessionOptions session;
     InputOptions input;
     std::string tf;
     glm::ivec2 size{1024, 1024};
@@ -49,6 +50,7 @@ struct SweepOptions : SceneOptions {
 };
 
 struct StabilityOptions {
+    SessionOptions session;
     FolderOptions folder;
     std::string family; // empty: all
     bool reduced = false;
@@ -84,6 +86,11 @@ struct EditOptions : SceneOptions {
     bool verify = false;
 };
 
+struct ModelOptions : SceneOptions {
+    FolderOptions folder;
+    std::vector<int> layersPerPlane;
+};
+
 struct Command;
 
 // Each binds the options of one command, with its help. `options` must outlive the parsing.
@@ -92,7 +99,9 @@ void bindSweep(Command& command, SweepOptions& options);
 void bindStability(Command& command, StabilityOptions& options);
 void bindError(Command& command, ErrorOptions& options);
 void bindSkipbench(Command& command, SkipbenchOptions& options);
+void bindModel(Command& command, ModelOptions& options);
 void bindEdit(Command& command, EditOptions& options);
+void bindDevice(Command& command, SessionOptions& options);
 void bindInfo(Command& command, InputOptions& options);
 
 } // namespace slabcast

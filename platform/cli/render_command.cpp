@@ -8,6 +8,7 @@
 #include "platform/cli/error_table_file.h"
 #include "platform/cli/open_stage.h"
 #include "platform/cli/picture_file.h"
+#include "platform/cli/ratio_file.h"
 #include "platform/cli/report_files.h"
 #include "platform/cli/skip_options.h"
 #include "platform/io/atomic_file.h"
@@ -58,6 +59,20 @@ Result<Settings> settingsFor(Stage& stage, const RenderOptions& options) {
         return tl::unexpected(look.error());
     }
     return withSampling(options.settings, choice->sampling, stage.scene().facts());
+}
+
+/// One still picture is the same in every run: its ratio goes by no clock. Of several frames it may
+/// be what was measured.
+Result<FramePlan> planOf(Stage& stage, const Settings& settings, const RenderOptions& options) {
+    if (options.frames == 1) {
+        return stage.decide(settings);
+    }
+    return ratiosOf(stage, settings).and_then([&](const FoundRatios& found) {
+        if (options.explain && !found.origin.empty()) {
+            fmt::print("ratios: {}\n", found.origin);
+        }
+        return stage.decide(settings, found.ratios);
+    });
 }
 
 void print(const PictureDifference& d) {
@@ -146,7 +161,7 @@ Result<void> renderCommand(const RenderOptions& given) {
     Stage& stage = opened->stage;
     const Result<Settings> settings = settingsFor(stage, options);
     const Result<FramePlan> plan =
-        settings.and_then([&](const Settings& s) { return stage.decide(s); });
+        settings.and_then([&](const Settings& s) { return planOf(stage, s, options); });
     if (!plan) {
         return tl::unexpected(plan.error());
     }

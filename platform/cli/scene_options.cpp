@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "core/scene/known_devices.h"
 #include "core/volume/phantoms.h"
 #include "platform/io/load_volume.h"
 #include "platform/json/transfer_json.h"
@@ -295,12 +296,28 @@ void bindTransfer(Command& command, SceneOptions& o) {
     });
 }
 
+void bindDevice(Command& command, SessionOptions& o) {
+    Choices<std::string> names;
+    for (const KnownDevice& known : knownDevices()) {
+        names.emplace_back(known.name, known.name);
+    }
+    addChoice(command,
+              {.flag = "--device",
+               .help = "assume what this device can do instead of asking and testing the one that "
+                       "is there; for compilers of devices that are not at hand: " +
+                       knownDeviceNames(),
+               .group = "Device"},
+              o.device, names)
+        .word = "NAME";
+}
+
 void bindScene(Command& command, SceneOptions& o) {
     bindInput(command, o.input);
     bindTexture(command, o.input);
     bindCamera(command, o);
     bindEyes(command, o);
     bindTransfer(command, o);
+    bindDevice(command, o.session);
 }
 
 } // namespace slabcast

@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "core/scene/known_devices.h"
 #include "core/volume/downsample.h"
 #include "core/volume/phantoms.h"
 #include "core/volume/resample.h"
@@ -30,6 +31,21 @@ void sayUnknownMasks(const std::string& mask) {
                             extension));
         }
     }
+}
+
+/// Null where none is to be assumed.
+Result<const KnownDevice*> assumedDevice(const SessionOptions& options) {
+    const char* variable = std::getenv("SLABCAST_DEVICE");
+    const std::string name = !options.device.empty() ? options.device
+                             : variable != nullptr   ? variable
+                                                     : "";
+    const KnownDevice* known = findKnownDevice(name);
+    if (known == nullptr && !name.empty()) {
+        return fail(
+            ErrorCode::InvalidArgument,
+            fmt::format("SLABCAST_DEVICE: '{}' is not one of {}", name, knownDeviceNames()));
+    }
+    return known;
 }
 
 bool isPhantom(const InputOptions& options) {
@@ -61,17 +77,27 @@ Result<Volume> fileOf(const InputOptions& options) {
 
 } // namespace
 
-Result<Session> openSession() {
+Result<Session> openSession(const SessionOptions& options) {
+    const Result<const KnownDevice*> known = assumedDevice(options);
+    if (!known) {
+        return tl::unexpected(known.error());
+    }
     Result<EglContext> context = EglContext::create();
     if (!context) {
         return tl::unexpected(context.error());
     }
     const char* mask = std::getenv("SLABCAST_MASK_EXTENSIONS");
-    Result<Device> device = Device::open(
-        context->getProc(),
-        {.maskedExtensions = gl::parseExtensionMask(mask == nullptr ? "" : mask), .log = say});
+    DeviceOptions asked = {.maskedExtensions = gl::parseExtensionMask(mask == nullptr ? "" : mask),
+                           .log = say};
+    Result<Device> device = *known == nullptr
+                                ? Device::open(context->getProc(), std::move(asked))
+                                : openAs(**known, context->getProc(), std::move(asked));
     if (!device) {
         return tl::unexpected(device.error());
+    }
+    if (*known != nullptr) {
+        say(fmt::format("what the {} can do is assumed, and nothing of it tested; {}",
+                        (*known)->renderer, device->caps().driver));
     }
     sayUnknownMasks(mask == nullptr ? "" : mask);
     return Session{std::move(*context), std::move(*device)};

@@ -17,8 +17,16 @@ struct Session {
     Device device;
 };
 
-/// Extensions named in SLABCAST_MASK_EXTENSIONS behave as absent.
-Result<Session> openSession();
+/// What a command that draws says of the device.
+struct SessionOptions {
+    /// By its name in core/scene/known_devices.h, the device whose capabilities and self-test
+    /// results are assumed; empty: SLABCAST_DEVICE, or what is there is asked and tested.
+    std::string device;
+};
+
+/// Extensions named in SLABCAST_MASK_EXTENSIONS behave as absent. Says on stderr what is assumed.
+/// Fails: as Device::open(); InvalidArgument (SLABCAST_DEVICE names no device that is known).
+Result<Session> openSession(const SessionOptions& options);
 
 /// What is common to all commands that read a volume.
 struct InputOptions {

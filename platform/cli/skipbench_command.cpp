@@ -100,7 +100,7 @@ Result<void> write(DiskFolder& folder, const skipbench::Report& report) {
 
 Result<void> skipbenchCommand(const SkipbenchOptions& options, const std::string& command) {
     DiskFolder folder(options.folder);
-    const Result<Session> session = openSession();
+    const Result<Session> session = openSession(options.session);
     if (!session) {
         return tl::unexpected(session.error());
     }

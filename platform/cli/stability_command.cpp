@@ -13,7 +13,7 @@ Result<void> stabilityCommand(const StabilityOptions& options, const std::string
                                   .and_then([&] {
                                       return claim(folder, {"stability", options.family, command});
                                   })
-                                  .and_then([] { return openSession(); });
+                                  .and_then([&] { return openSession(options.session); });
     if (!session) {
         return tl::unexpected(session.error());
     }

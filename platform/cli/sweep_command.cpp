@@ -3,6 +3,7 @@
 #include "perf/sweep/sweep.h"
 #include "platform/cli/commands.h"
 #include "platform/cli/open_stage.h"
+#include "platform/cli/ratio_file.h"
 #include "platform/cli/report_files.h"
 
 namespace slabcast {
@@ -19,6 +20,11 @@ Result<void> sweepCommand(const SweepOptions& options, const std::string& comman
     const SweepDesc desc{options.layersPerPlane, options.frames};
     return folder.make("sweep.json")
         .and_then([&] { return sweep(opened->stage, desc, runOf(command), folder); })
+        .map([&](std::vector<RatioMeasurement> ratios) {
+            if (!ratios.empty()) {
+                keepRatios(opened->stage, options.settings, std::move(ratios));
+            }
+        })
         .and_then([&] { return folder.makePage("report.py", "sweep.json and sweep.csv"); });
 }
 

@@ -48,7 +48,14 @@ class BadUsage(CliTest):
                           (("error", PHANTOM, "--out", "d", "--frames", "2"), "--frames: '2'"),
                           (("paint",), "paint"),
                           (("info",), "VOLUME is required"),
-                          (("device", "2"), "2")))
+                          (("device", "2"), "2"),
+                          (("device", "--device", "g7"), "--device: 'g7' is not one of g71, "),
+                          (("render", PHANTOM, "-o", "p.png", "--device", ""), "--device: '' is not one of g71, ")))
+
+    def test_a_variable_that_names_no_device(self):
+        self.all_fail([(arguments, "SLABCAST_DEVICE: 'G71' is not", "one of g71, ")
+                       for arguments in (("device",), ("render", PHANTOM, "-o", "p.png", *QUICK))],
+                      status=2, env={"SLABCAST_DEVICE": "G71"})
 
     def test_files_of_settings_that_hold_none(self):
         bad = {"text.json": ("layers: 4", "is no JSON"), "list.json": ("[1]", "holds no settings"),

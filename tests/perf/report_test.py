@@ -49,6 +49,8 @@ def row(planes, layers, skip, ms):
             "layers_skipped": 444_000_000 - evaluated, "volume_fetches": evaluated,
             "skip_fetches": 0 if skip == "none" else 1_000_000 * (planes + 20)},
         "compile_ms": 3.0 + 0.8 * min(layers, 64), "first_frame_ms": 1.5 * ms, "variant": f"post-{skip}-{form}{layers}",
+        "model": {"g71": {"device": "Mali-G71 MP20, Galaxy S8", "frame_ms": ms / 10, "low_ms": ms / 12, "high_ms": ms / 5,
+                          "limit": "texture", "divergence_ms": 1.25}},
         "thumbnail": f"thumbnails/{planes}x{layers}_{skip}.png"}
 
 
@@ -130,6 +132,12 @@ class WholePageTest(unittest.TestCase):
         self.assertEqual(run(self.folder, "2").returncode, 0)
         self.assertEqual({path.name: path.read_bytes() for path in (self.folder / "figures").iterdir()}, figures)
         self.assertEqual((self.folder / "report.html").read_text(), self.text)
+
+    def test_a_model_is_called_a_model(self):
+        for expected in ("Other GPUs, by a model", "<strong>A model, not a measurement</strong>", "a model, not measured",
+                         "<td>17.5 ms</td><td>14.6 ms – 35 ms</td>"):
+            self.assertIn(expected.replace("14.6 ms – 35 ms", "14.6 – 35 ms"), self.text)
+        self.assertEqual(self.text.count("model: Mali-G71 MP20, Galaxy S8"), 2)  # the wide figure and the narrow one
 
     def test_paper_stands_as_multiples_of_its_own_slicing(self):
         text = self.text

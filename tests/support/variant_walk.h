@@ -2,101 +2,18 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <set>
 #include <vector>
 
-#include "core/plan/frame_plan.h"
 #include "core/plan/shader_axes.h"
+#include "perf/mobile/reachable_variants.h"
 
 /// Which shader variants tests walk: those that plans reach, and pairs of axis values for the rest.
 namespace slabcast::test {
 
-using Change = std::function<void(Settings&)>;
-
-/// One choice each that differs from the default settings.
-inline std::vector<Change> settingsChanges() {
-    std::vector<Change> changes = {
-        [](Settings&) {},
-        [](Settings& s) { s.classification = Classification::Pre; },
-        [](Settings& s) { s.classification = Classification::Preintegrated; },
-        [](Settings& s) { s.skip = SkipStructure::None; },
-        [](Settings& s) { s.lattice = LatticeKind::Shells; },
-        [](Settings& s) { s.jitter = true; },
-        [](Settings& s) { s.totalLayers = 1; },
-        [](Settings& s) { s.planes = 1; },
-        [](Settings& s) { s.form = SegmentForm::Loop; },
-        [](Settings& s) { s.tighten = false; },
-        [](Settings& s) { s.target = TargetFormat::Rgba16f; },
-        [](Settings& s) { s.space = CompositingSpace::Linear; },
-        [](Settings& s) { s.shaded = true; },
-        [](Settings& s) { s.order = BlendOrder::FrontToBack; },
-        [](Settings& s) { s.termination.reset(); },
-    };
-    for (const int length : kUnrollLengths) {
-        changes.push_back([length](Settings& s) { s.layersPerPlane = length; });
-    }
-    return changes;
-}
-
-/// Every form of skipping, filtered or exact, as thin and as dense as decides anything.
-inline std::vector<SceneFacts> factsOfAllKinds() {
-    const SkipOptions structures[] = {
-        {.structure = SkipStructure::None},
-        {.structure = SkipStructure::Proximity},
-        {.structure = SkipStructure::Chebyshev},
-        {.structure = SkipStructure::BooleanOctree},
-        {.structure = SkipStructure::BitfieldOctree, .bits = 128},
-        {.structure = SkipStructure::MinMaxOctree},
-    };
-    std::vector<SceneFacts> all;
-    for (const SkipOptions& skip : structures) {
-        for (const bool exact : {false, true}) {
-            for (const double extinction : {1e-6, 10.0}) {
-                all.push_back({.sphere = {glm::dvec3(0.0), 222.0},
-                               .exactField = exact,
-                               .skip = skip,
-                               .occupiedFraction = 0.5,
-                               .maxExtinctionPerMm = extinction});
-            }
-        }
-    }
-    return all;
-}
-
-/// What plan() answers, whatever facts and device, to settings of which at most `choices` differ
-/// from the default; and the same variants counting work.
+/// Of so many that every text is looked at.
 inline std::set<ShaderVariant> reachableVariants(int choices) {
-    std::set<ShaderVariant> reached;
-    const std::vector<SceneFacts> facts = factsOfAllKinds();
-    const auto planAll = [&](const Settings& settings) {
-        for (const SceneFacts& of : facts) {
-            for (const int device : {0, 1, 2, 3}) {
-                gl::Caps caps;
-                caps.isSoftware = device % 2 == 1;
-                caps.framebufferFetch = device / 2 == 1;
-                if (const Result<FramePlan> made = plan(of, settings, caps, {})) {
-                    ShaderVariant variant = made->variant;
-                    reached.insert(variant);
-                    variant.counts = true;
-                    reached.insert(variant);
-                }
-            }
-        }
-    };
-    const std::vector<Change> changes = settingsChanges();
-    for (std::size_t a = 0; a < changes.size(); ++a) {
-        for (std::size_t b = choices > 1 ? a + 1 : a; b < (choices > 1 ? changes.size() : a + 1);
-             ++b) {
-            Settings settings;
-            changes[a](settings);
-            if (choices > 1) {
-                changes[b](settings);
-            }
-            planAll(settings);
-        }
-    }
-    return reached;
+    return slabcast::reachableVariants(choices, true);
 }
 
 /// Values of two axes, by their places.

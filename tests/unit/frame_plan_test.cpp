@@ -302,9 +302,15 @@ TEST(FramePlan, AMeasurementOfOtherLayersStillCoversAll) {
     }
 }
 
-TEST(FramePlan, WithoutMeasurementsASoftwareDriverLoops) {
+TEST(FramePlan, WithoutMeasurementsTheRatioGoesByDevice) {
     EXPECT_EQ(planned({}).variant.unroll, 16);
-    EXPECT_EQ(planned({}, boneFacts(), kSoftware).variant.unroll, 0);
+    const FramePlan software = planned({}, boneFacts(), kSoftware);
+    EXPECT_EQ(software.planes, 1);
+    EXPECT_EQ(software.variant.unroll, 0);
+    EXPECT_NE(reasonFor(software, "ratio 1x444 loop")->why.find("nothing was measured"),
+              std::string::npos);
+    EXPECT_NE(reasonFor(planned({}), "ratio 28x16 unrolled")->why.find("nothing was measured"),
+              std::string::npos);
     EXPECT_EQ(planned({.form = SegmentForm::Unrolled}, boneFacts(), kSoftware).variant.unroll, 16);
     EXPECT_EQ(planned({.planes = 1}).variant.unroll, 0); // beyond the list
     EXPECT_EQ(planned({.layersPerPlane = 5}).variant.unroll, 8);

@@ -83,8 +83,15 @@ inline constexpr Decision kDecisions[] = {
 /// tenth to a quarter less (llvmpipe).
 inline constexpr int kFewestLayersToSkip = 4;
 
+/// Above this share of occupied blocks a skip fetch per layer costs more than the few layers that
+/// it saves.
+inline constexpr double kWorthSkipping = 0.95;
+
 /// What speaks for looking at the skip structure.
 enum class LooksCost : std::uint8_t { SpareEightFetches, AsMeasuredHere, AsMeasuredElsewhere };
+
+/// What a ratio goes by that was neither asked for nor measured.
+enum class RatioRule : std::uint8_t { Middle, WholeRays, Modelled };
 
 inline void because(FramePlan& plan, ReasonId id, std::array<double, 5> numbers = {}) {
     plan.reasons.add({id, numbers});

@@ -4,10 +4,6 @@ namespace slabcast {
 
 namespace {
 
-/// Above this share of occupied blocks a skip fetch per layer costs more than the few layers that
-/// it saves.
-constexpr double kWorthSkipping = 0.95;
-
 /// The structure that was built, or none: asked for, or where it would not pay.
 ReasonId chosen(const PlanInput& in, const FramePlan& plan) {
     const auto& [facts, settings, caps, measurements] = in;
