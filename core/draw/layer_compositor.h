@@ -13,6 +13,7 @@ public:
     Result<void> create() {
         return pass_.create("composite", "pass/composite.frag", {"layerOrigin", "conversion"});
     }
+    bool exists() const { return pass_.exists(); }
     void composite(GLuint texture, int x, int y, LayerConversion conversion) const;
     void forget() {
         pass_.forget();

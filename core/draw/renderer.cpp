@@ -51,9 +51,8 @@ Result<void> Renderer::State::createFixed(gl::StateScope& state) {
     }
     state.touch();
     drawer.create();
-    Result<void> done = compositor.create();
-    created = done.has_value();
-    return done;
+    created = true;
+    return {};
 }
 
 Result<const gl::Program*> Renderer::State::needProgram(const ShaderVariant& variant,
@@ -208,6 +207,12 @@ Result<void> Renderer::State::prepareViews(const Scene& scene, const FramePlan& 
         longest = std::max(longest, longestLayerMm(plan, target.view.frustum));
         if (needsLayer(plan, target.encoding)) {
             layerSize = glm::max(layerSize, glm::ivec2(v.width, v.height));
+            if (!compositor.exists()) {
+                state.touch();
+                if (Result<void> made = compositor.create(); !made) {
+                    return made;
+                }
+            }
         }
         if (target.layer && !ofLayers) {
             state.touch();
