@@ -64,6 +64,23 @@ Result<const gl::Program*> Renderer::State::needProgram(const ShaderVariant& var
     return programs.need(variant);
 }
 
+Result<void> Renderer::State::needPrograms(const Scene& scene, const FramePlan& plan,
+                                           std::span<const ViewTarget> views,
+                                           gl::StateScope& state) {
+    constexpr double kNear = 2.0; // radii: an eye that is so near may be inside a moment later
+    const auto mayBeCut = [&](const ViewTarget& target) {
+        const RayFrame frame =
+            makeRayFrame(target.view, target.viewport, scene.geometry(), plan.lattice);
+        return frame.sphereDistance < kNear * frame.radius ||
+               variantFor(plan, frame, target.view.frustum) != plan.variant;
+    };
+    const bool cuts = views.empty() || std::any_of(views.begin(), views.end(), mayBeCut);
+    const Result<const gl::Program*> cut =
+        needProgram(cuts ? cutVariant(plan) : plan.variant, state);
+    const Result<const gl::Program*> own = cut ? needProgram(plan.variant, state) : cut;
+    return own ? Result<void>{} : tl::unexpected(own.error());
+}
+
 Result<void> Renderer::State::needMarks(const FramePlan& plan, gl::StateScope& state) {
     if (plan.planesPerMark == 0 || marks.exist()) {
         return {};
@@ -185,10 +202,8 @@ Result<void> Renderer::prepare(const Scene& scene, const FramePlan& plan,
     return state_->createFixed(scope)
         .and_then([&] { return state_->textures.update(scene, plan, state_->caps, scope); })
         .and_then([&] { return state_->needMarks(plan, scope); })
-        .and_then([&] { return state_->needProgram(cutVariant(plan), scope); })
-        .and_then([&](const gl::Program*) { return state_->needProgram(plan.variant, scope); })
-        .and_then(
-            [&](const gl::Program*) { return state_->prepareViews(scene, plan, views, scope); });
+        .and_then([&] { return state_->needPrograms(scene, plan, views, scope); })
+        .and_then([&] { return state_->prepareViews(scene, plan, views, scope); });
 }
 
 Result<void> Renderer::State::prepareViews(const Scene& scene, const FramePlan& plan,
@@ -336,9 +351,7 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
     if (plan.drawsNothing) {
         return {};
     }
-    if (state_->programs.find(plan.variant) == nullptr ||
-        state_->programs.find(cutVariant(plan)) == nullptr ||
-        !state_->textures.serve(scene, plan)) {
+    if (state_->programs.find(plan.variant) == nullptr || !state_->textures.serve(scene, plan)) {
         return fail(ErrorCode::InvalidArgument,
                     "scene and plan were not prepared: call prepare() with them first");
     }
@@ -358,6 +371,11 @@ Result<void> Renderer::draw(const Scene& scene, const FramePlan& plan,
             const bool layered = needsLayer(plan, target.encoding);
             state_->drawing[i] = state_->programs.find(state_->stage(
                 i, scene, plan, target.view, layered ? Viewport{0, 0, v.width, v.height} : v));
+            if (state_->drawing[i] == nullptr) {
+                return fail(ErrorCode::InvalidArgument,
+                            "a view's eye or near plane is nearer to the volume than those that "
+                            "were prepared: prepare() with these views first");
+            }
         }
     }
     gl::StateScope scope(state_->hostState);

@@ -119,11 +119,12 @@ public:
     /// layer of our own as large as the largest view, the boxes that planes are tightened around.
     /// Nothing is done for what is there already; textures that the plan does not use are released
     /// (all, where it draws nothing; while the scene is edited, what the next TF may need stays),
-    /// compiled shaders are kept. Of the views, sizes, encodings, frusta and whether they are
-    /// layers count, not which or where they look. Accepts exactly what draw() can draw. Restores
-    /// the GL state (gl::StateGuard). Fails: InvalidArgument (a plan made for another look, or for
-    /// other things than were provided since; a view that check() refuses; textures to be made from
-    /// texels that were let go), DeviceOutOfMemory, VolumeTooLarge, ShaderCompile.
+    /// compiled shaders are kept. Of the views, sizes, encodings, frusta, whether they are layers
+    /// and whether an eye is within two radii of the volume's middle count, not which or where they
+    /// look (without views: any eye). Accepts exactly what draw() can draw. Restores the GL state
+    /// (gl::StateGuard). Fails: InvalidArgument (a plan made for another look, or for other things
+    /// than were provided since; a view that check() refuses; textures to be made from texels that
+    /// were let go), DeviceOutOfMemory, VolumeTooLarge, ShaderCompile.
     Result<void> prepare(const Scene& scene, const FramePlan& plan,
                          std::span<const ViewTarget> views);
 

@@ -40,6 +40,9 @@ struct Renderer::State {
 
     Result<void> createFixed(gl::StateScope& state);
     Result<const gl::Program*> needProgram(const ShaderVariant& variant, gl::StateScope& state);
+    /// The plan's, and the one that cuts rays' stays where a view may come to need it.
+    Result<void> needPrograms(const Scene& scene, const FramePlan& plan,
+                              std::span<const ViewTarget> views, gl::StateScope& state);
     Result<void> needMarks(const FramePlan& plan, gl::StateScope& state);
     /// What the views need beside textures and shaders.
     Result<void> prepareViews(const Scene& scene, const FramePlan& plan,

@@ -88,7 +88,8 @@ std::string name(const ShaderVariant& variant) {
 }
 
 int groupOf(const ShaderVariant& variant) {
-    return valueOn(infoOf(Axis::Form), variant).layersPerGroup;
+    const int fours = valueOn(infoOf(Axis::Group), variant).layersPerGroup;
+    return fours > 0 ? fours : valueOn(infoOf(Axis::Form), variant).layersPerGroup;
 }
 
 std::vector<std::string> samplersOf(const ShaderVariant& variant) {
@@ -124,11 +125,12 @@ Result<ShaderPair> shaderText(const ShaderVariant& variant, const MeasuringText&
         for (const SlotFile& slot : value.files) {
             defines[slot.slot] = slot.file;
         }
-        if (const int group = value.layersPerGroup; group > 0) {
-            defines["GROUP"] = std::to_string(group);
-            defines["GROUP_LAYERS(X)"] = writtenOut(group, 1, "");
-            defines["REPEAT_GROUPS(X)"] = writtenOut(value.layersWrittenOut, group, ".0");
-        }
+    }
+    const int group = groupOf(variant);
+    defines["GROUP"] = std::to_string(group);
+    defines["GROUP_LAYERS(X)"] = writtenOut(group, 1, "");
+    if (variant.unroll > 0) {
+        defines["REPEAT_GROUPS(X)"] = writtenOut(variant.unroll, group, ".0");
     }
     Result<std::string> vertex = expandShader(defines.at("COVER_FILE"), defines);
     Result<std::string> fragment = expandShader("segment/segment.frag", defines);

@@ -60,7 +60,7 @@ struct TableFilterTest {
 
 /// Usable where what lies between two zeros is exactly zero, and every sample stays within 1/256 of
 /// the difference of its texels (weights of eight bits, cut off) and one rounding step of fp16.
-/// Pure. Tested by: table_filter_test.cpp
+/// Pure. Tested by: texel_format_test.cpp
 TableFilterTest judgeTableFilter(std::span<const FilterSample> samples);
 
 /// Saves and restores the GL state. Cost: one small draw, once per device.

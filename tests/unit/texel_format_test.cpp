@@ -111,5 +111,22 @@ TEST(ChooseTexelFormatTest, takesNoStepsThatAreTooLong) {
     EXPECT_EQ(chosen(VoxelType::U8, reaching(0.0, 255.0), 1e-3, kAllFiltered), TexelFormat::R8);
 }
 
+// A filter with weights of eight bits passes; one that lets a neighbour in, or is further off,
+// fails.
+TEST(TableFilterTest, isJudgedByZerosAndByWeights) {
+    const FilterSample between{0.5, 0.5 + 1.0 / 300.0, 0.0, 1.0, 1};
+    const FilterSample zero{0.0, 0.0, 0.0, 0.0, 1};
+    const TableFilterTest good = judgeTableFilter(std::array{between, zero});
+    EXPECT_TRUE(good.usable) << good.reason;
+    EXPECT_NEAR(good.maxError, 1.0 / 300.0, 1e-12);
+    FilterSample leaking = zero;
+    leaking.measured = 1e-7;
+    EXPECT_FALSE(judgeTableFilter(std::array{between, leaking}).usable);
+    FilterSample coarse = between;
+    coarse.measured = 0.5 + 1.0 / 200.0;
+    EXPECT_FALSE(judgeTableFilter(std::array{coarse, zero}).usable);
+    EXPECT_FALSE(judgeTableFilter({}).usable);
+}
+
 } // namespace
 } // namespace slabcast

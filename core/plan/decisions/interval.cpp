@@ -9,7 +9,7 @@ namespace {
 bool textEndsWithPlane(const FramePlan& plan) {
     const int unrolled = plan.variant.unroll;
     return unrolled > 0 ? unrolled == plan.layersPerPlane
-                        : plan.planes == 1 || plan.layersPerPlane % kLoopGroup == 0;
+                        : plan.planes == 1 || plan.layersPerPlane % groupOf(plan.variant) == 0;
 }
 
 /// What cuts a ray's stay where it may be seen, or why cutting it costs less than not to.
