@@ -31,7 +31,6 @@ enum class Axis : std::uint8_t {
     Lattice,
     Jitter,
     Cover,
-    Group,
     Form,
 };
 
@@ -214,13 +213,6 @@ inline constexpr AxisValue kCover[] = {
     {.name = "planes", .files = {{"COVER_FILE", "cover/plane.vert"}}},
 };
 
-/// Of a loop. A software driver pays for every layer and little for a branch: on the skull groups
-/// of four evaluate a quarter fewer layers than groups of eight (llvmpipe).
-inline constexpr AxisValue kGroup[] = {
-    {.name = "whole"},
-    {.name = "fours", .suffix = "+fours", .layersPerGroup = 4},
-};
-
 inline constexpr AxisValue kForm[] = {
     {.name = "loop",
      .suffix = "/loop",
@@ -293,7 +285,6 @@ inline constexpr AxisInfo kAxes[] = {
     axes::axis<&ShaderVariant::lattice>("lattice", axes::kLattice),
     axes::axis<&ShaderVariant::jittered>("jitter", axes::kJitter),
     axes::axis<&ShaderVariant::cover>("cover", axes::kCover),
-    axes::axis<&ShaderVariant::foursInLoop>("group", axes::kGroup),
     {"form", axes::formOf, axes::chooseForm, axes::kForm, std::size(axes::kForm)},
 };
 
@@ -310,8 +301,6 @@ inline constexpr Requirement kRequirements[] = {
     // Means of intervals are extinctions, and layers of one length are those of shells.
     {Axis::Lengths, 1, Axis::Classification, {0, 1}},
     {Axis::Lengths, 1, Axis::Lattice, {1}},
-    // Written-out lengths have groups of their own.
-    {Axis::Group, 1, Axis::Form, {0}},
     // What is before a segment is looked at to leave it.
     {Axis::Target, 1, Axis::Termination, {1}},
 };

@@ -88,8 +88,7 @@ std::string name(const ShaderVariant& variant) {
 }
 
 int groupOf(const ShaderVariant& variant) {
-    const int fours = valueOn(infoOf(Axis::Group), variant).layersPerGroup;
-    return fours > 0 ? fours : valueOn(infoOf(Axis::Form), variant).layersPerGroup;
+    return valueOn(infoOf(Axis::Form), variant).layersPerGroup;
 }
 
 std::vector<std::string> samplersOf(const ShaderVariant& variant) {

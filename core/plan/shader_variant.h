@@ -59,7 +59,6 @@ struct ShaderVariant {
     Interval interval = Interval::Box;
     Accumulate accumulate = Accumulate::Composite;
     Cover cover = Cover::Planes;
-    bool foursInLoop = false; // groups of a loop are of four layers
 
     bool operator==(const ShaderVariant&) const = default;
     auto operator<=>(const ShaderVariant&) const = default;

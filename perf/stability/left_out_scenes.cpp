@@ -53,33 +53,26 @@ double zero(const Evidence& /*evidence*/) {
     return 0.0;
 }
 
-/// Whether the free length around a group's middle reaches both of its ends.
-bool isFree(const LatticeRay& ray, const Evidence& e, int front, int layers) {
+/// Layers of all rays in groups that begin where a block may hold something visible.
+double layersFromOccupiedBlocks(const Evidence& e) {
     const FreeLengths& cloud = *e.scene.skip().lengths;
-    const double middle = front + layers / 2.0 - e.plan.lattice.total / 2.0;
-    const glm::dvec3 uvw = glm::clamp(ray.centre + middle * ray.step, 0.0, 1.0);
-    const glm::dvec3 place =
-        uvw * glm::dvec3(e.scene.geometry().dims) / double(cloud.blockEdgeVoxels);
-    const glm::ivec3 block = glm::min(glm::ivec3(place), cloud.blocks - 1);
-    const std::int64_t index =
-        (std::int64_t(block.z) * cloud.blocks.y + block.y) * cloud.blocks.x + block.x;
-    const double reachMm = (cloud.counts[std::size_t(index)] - 1) * cloud.quantumMm;
-    return reachMm > 0.5 * (layers - 1) * ray.layerLengthMm;
-}
-
-/// Layers of all rays in groups that one look does not prove to be free.
-double layersOfOccupiedGroups(const Evidence& e) {
     const Viewport viewport{0, 0, e.size.x, e.size.y};
     const RayFrame frame = makeRayFrame(e.view, viewport, e.scene.geometry(), e.plan.lattice);
-    const int group = groupOf(e.plan.variant);
+    const glm::dvec3 blocksPerUvw =
+        glm::dvec3(e.scene.geometry().dims) / double(cloud.blockEdgeVoxels);
     std::int64_t count = 0;
     for (int i = 0; i < e.size.x * e.size.y; ++i) {
         const LatticeRay ray = rayAt(frame, glm::dvec2(i % e.size.x, i / e.size.x) + 0.5);
         const LayerRange layers = layersOf(ray, e.plan.lattice.total);
-        for (int front = 0; front < e.plan.lattice.total; front += e.plan.layersPerPlane) {
-            const int end = std::min(layers.end - front, e.plan.layersPerPlane);
-            for (int k = std::max(layers.begin - front, 0) / group * group; k < end; k += group) {
-                count += isFree(ray, e, front + k, group) ? 0 : group;
+        for (int k = layers.begin; k < layers.end; ++k) {
+            const glm::dvec3 uvw = samplePosition(ray, e.plan.lattice.total, k);
+            const glm::ivec3 block = glm::clamp(glm::ivec3(glm::floor(uvw * blocksPerUvw)),
+                                                glm::ivec3(0), cloud.blocks - 1);
+            const std::int64_t index =
+                (std::int64_t(block.z) * cloud.blocks.y + block.y) * cloud.blocks.x + block.x;
+            if (cloud.counts[std::size_t(index)] == 0) {
+                count += kLoopGroup;
+                k += kLoopGroup - 1;
             }
         }
     }
@@ -128,8 +121,8 @@ constexpr WorkClaim kOneFetch{
 
 constexpr WorkClaim kOccupiedOnly{
     "layers evaluated", [](const Evidence& e) { return double(e.work.layersEvaluated); },
-    [](const Evidence& e) { return 1.005 * layersOfOccupiedGroups(e); },
-    "layers of groups whose middle's free length does not reach their ends, counted in float64; a "
+    [](const Evidence& e) { return 1.005 * layersFromOccupiedBlocks(e); },
+    "layers of groups of eight that begin in a block with something visible, counted in float64; a "
     "half per cent for those that float32 places beyond a block's face"};
 
 } // namespace

@@ -130,7 +130,7 @@ class Help(CliTest):
 
     def test_defaults_are_shown(self):
         text = " ".join(self.succeeds("render", "--help").split())
-        for default in ("1024x1024", "0,10,2.5", "40", "planar", "display", "auto", "rgba8", "000000"):
+        for default in ("1024x1024", "0,10,2.5", "40", "display", "auto", "rgba8", "000000"):
             self.assertIn(f"(default: {default})", text)
         self.assertRegex(text, r"--termination .+ \(default: 0\.99\d+\)")
 

@@ -210,7 +210,9 @@ TEST_F(PreintegratedTest, ARunOfLayersTakesOneSampleMore) {
                 for (int front = 0; front < plan.lattice.total; front += plan.layersPerPlane) {
                     const int begin = std::max(range.begin - front, 0);
                     const int end = std::min(range.end - front, plan.layersPerPlane);
-                    runs += begin < end ? (end + group - 1) / group - begin / group : 0;
+                    // A loop's first group begins where the stay does.
+                    const int first = plan.variant.unroll > 0 ? begin / group * group : begin;
+                    runs += begin < end ? (end - first + group - 1) / group : 0;
                 }
             }
         }

@@ -45,7 +45,9 @@ int inGroups(LayerRange run, const FramePlan& plan) {
     for (int front = 0; front < plan.lattice.total; front += plan.layersPerPlane) {
         const int begin = std::max(run.begin - front, 0);
         const int end = std::min(run.end - front, plan.layersPerPlane);
-        sum += begin < end ? ((end + group - 1) / group - begin / group) * group : 0;
+        // A loop's first group begins where the stay does.
+        const int first = plan.variant.unroll > 0 ? begin / group * group : begin;
+        sum += begin < end ? (end - first + group - 1) / group * group : 0;
     }
     return sum;
 }

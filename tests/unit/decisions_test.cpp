@@ -29,7 +29,6 @@ constexpr PartMembers kParts[] = {
          to.planes = from.planes;
          to.layersPerPlane = from.layersPerPlane;
          to.variant.unroll = from.variant.unroll;
-         to.variant.foursInLoop = from.variant.foursInLoop;
      }},
     {PlanPart::Classification,
      [](FramePlan& to, const FramePlan& from) {

@@ -100,7 +100,6 @@ Result<void> decideRatio(const PlanInput& in, FramePlan& plan) {
     plan.planes = ratio.planes;
     plan.layersPerPlane = ratio.layersPerPlane;
     plan.variant.unroll = unrolled ? length : 0;
-    plan.variant.foursInLoop = !unrolled && in.caps.isSoftware;
     const KnownGpu* gpu = findKnownGpu(in.caps.renderer);
     const auto index = gpu == nullptr ? 0.0 : static_cast<double>(gpu - kKnownGpus);
     because(plan, reason,

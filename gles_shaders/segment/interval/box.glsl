@@ -55,15 +55,10 @@ float kept(Segment segment, float at) {
     return clamp(at, segment.entry, segment.exit);
 }
 
-/// The layers that a loop goes over, from a group's first.
-float firstGroup(Segment segment) {
-    return floor(max(segment.entry, 0.0) * (1.0 / float(GROUP))) * float(GROUP);
+/// The segment's first layer that counts, and where they end.
+float firstLayer(Segment segment) {
+    return floor(max(segment.entry, 0.0));
 }
 float endOfLayers(Segment segment) {
     return segment.exit;
-}
-
-/// Layers of the groups that are inside, in whole or in part.
-float layersInGroups(Segment segment) {
-    return max(ceil(segment.exit / float(GROUP)) * float(GROUP) - firstGroup(segment), 0.0);
 }

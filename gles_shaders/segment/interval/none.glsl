@@ -34,12 +34,10 @@ Segment wholeLayers(Segment segment) {
     return segment;
 }
 
-float firstGroup(Segment segment) {
+/// The segment's first layer that counts, and where they end.
+float firstLayer(Segment segment) {
     return 0.0;
 }
 float endOfLayers(Segment segment) {
     return viewport.z;
-}
-float layersInGroups(Segment segment) {
-    return ceil(viewport.z / float(GROUP)) * float(GROUP);
 }

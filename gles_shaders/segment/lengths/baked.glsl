@@ -17,6 +17,7 @@ Segment composited(Segment segment) {
     return wholeLayers(segment);
 }
 
+float layersInGroups(Segment segment);
 float layersOf(Segment segment) {
     return layersInGroups(composited(segment)) + step(0.0, cutAtEntry(segment)) +
            step(0.0, cutAtExit(segment));

@@ -16,6 +16,7 @@ void addLayer(inout Sum sum, inout float front, Ray ray, Segment segment, float 
 Segment composited(Segment segment) {
     return segment;
 }
+float layersInGroups(Segment segment);
 float layersOf(Segment segment) {
     return layersInGroups(segment);
 }

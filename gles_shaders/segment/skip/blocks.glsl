@@ -7,8 +7,8 @@ vec3 blocksAt(Ray ray, Segment segment, float k) {
     return clamp(placeOf(ray, segment, k + kSampleAt), 0.0, 1.0) * skipMap.xyz;
 }
 
-/// What a look found: the last sample known to be free, below all where none is.
-float freeWhere(bool found, float through) {
+/// What a look at sample `first` found: how far samples are free.
+float freeWhere(bool found, float first, float layers) {
     countLook(found);
-    return found ? through : -1.0;
+    return found ? first + max(layers, 0.0) : first - 1.0;
 }

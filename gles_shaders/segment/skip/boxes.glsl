@@ -18,12 +18,10 @@ bool isFree(Ray ray, Segment segment, float first, float last) {
     return countIsAbove(block, uint(min(ceil(needed), 255.0)));
 }
 
-float freeThrough(Ray ray, Segment segment, float first, float last) {
-    float middle = 0.5 * (first + last);
-    vec3 place = blocksAt(ray, segment, middle);
+float freeThrough(Ray ray, Segment segment, float first) {
+    vec3 place = blocksAt(ray, segment, first);
     ivec3 block = ivec3(place);
-    vec3 centre = vec3(block) + 0.5;
     float count = float(freeCount(block));
-    bool found = count > ceil(blocksNeeded(ray, segment, first, last, centre));
-    return freeWhere(found, middle + layersAhead(ray, place, centre, vec3(count - 0.5)));
+    return freeWhere(count > 0.0, first,
+                     layersAhead(ray, place, vec3(block) + 0.5, vec3(count - 0.5)));
 }

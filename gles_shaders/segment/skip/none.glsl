@@ -5,6 +5,6 @@ bool isFree(Ray ray, Segment segment, float first, float last) {
     return false;
 }
 
-float freeThrough(Ray ray, Segment segment, float first, float last) {
-    return -1.0;
+float freeThrough(Ray ray, Segment segment, float first) {
+    return first - 1.0;
 }

@@ -1,19 +1,18 @@
-// Of loops: a look that goes through an octree's levels.
-int nextLevel = 0; // of the next look, at least
+// Of loops: a look goes through an octree's levels.
+const int kCoarsest = 31;  // beyond any tree
+int nextLevel = kCoarsest; // that the next look begins at
 
-/// A loop may go on to the nodes around that one: it begins above and goes down.
-float freeThrough(Ray ray, Segment segment, float first, float last) {
+float freeThrough(Ray ray, Segment segment, float first) {
     vec3 place = blocksAt(ray, segment, first);
     ivec3 leaf = ivec3(place);
-    int least = levelOfBoth(leaf, ivec3(blocksAt(ray, segment, last)));
-    int level = max(least, min(nextLevel, octree.x));
-    bool found = false;
-    while (!found && level >= least && level <= octree.x) {
+    int level = min(nextLevel, octree.x);
+    bool found = nodeIsFree(leaf, level);
+    while (!found && level > 0) {
+        --level;
         found = nodeIsFree(leaf, level);
-        level -= found ? 0 : 1;
     }
     nextLevel = found ? level + octreeRise : octreeRise - 1;
     vec3 halfEdge = vec3(float(1 << level) * 0.5);
     vec3 centre = vec3((leaf >> level) << level) + halfEdge;
-    return freeWhere(found, first + layersAhead(ray, place, centre, halfEdge));
+    return freeWhere(found, first, layersAhead(ray, place, centre, halfEdge));
 }
