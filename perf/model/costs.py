@@ -19,7 +19,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "mobile"))
 import gpus  # noqa: E402
-from compile_run import Broken, compile_all, labels_of  # noqa: E402
+from compile_run import Broken, compile_all, keys_of  # noqa: E402
 from table_files import write_whole  # noqa: E402
 
 MADE = HERE / "segment_costs.inc"
@@ -49,14 +49,14 @@ def line_of(gpu, row):
 
 
 def lines(program):
-    labels = [label for label in labels_of(program, ["--choices", "all"])
-              if FORMS.search(label) and not LEFT_OUT.search(label)]
+    keys = {label: key for label, key in keys_of(program, ["--choices", "all"]).items()
+            if FORMS.search(label) and not LEFT_OUT.search(label)}
 
     def of(name):
         gpu = gpus.GPUS[name]
-        rows = compile_all(gpu, program, labels, ["--choices", "all"],
-                           lambda count: print(f"{gpu.title}: {count} of {len(labels)}", file=sys.stderr, flush=True))
-        return [line_of(gpu, rows[label]) for label in labels]
+        rows = compile_all(gpu, program, keys, ["--choices", "all"],
+                           lambda count: print(f"{gpu.title}: {count} of {len(keys)}", file=sys.stderr, flush=True))
+        return [line_of(gpu, rows[label]) for label in keys]
 
     for mesa in sorted({gpus.GPUS[name].mesa for name in GPUS}):
         gpus.build_folder(mesa)
