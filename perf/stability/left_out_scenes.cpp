@@ -53,26 +53,34 @@ double zero(const Evidence& /*evidence*/) {
     return 0.0;
 }
 
-/// Layers of all rays in groups that begin where a block may hold something visible.
+/// Layers of all rays in a loop's groups that begin where a block may hold something visible. No
+/// group goes on from plane to plane; one that reaches beyond its plane's end counts whole.
 double layersFromOccupiedBlocks(const Evidence& e) {
     const FreeLengths& cloud = *e.scene.skip().lengths;
     const Viewport viewport{0, 0, e.size.x, e.size.y};
     const RayFrame frame = makeRayFrame(e.view, viewport, e.scene.geometry(), e.plan.lattice);
+    const int total = e.plan.lattice.total;
     const glm::dvec3 blocksPerUvw =
         glm::dvec3(e.scene.geometry().dims) / double(cloud.blockEdgeVoxels);
+    const auto isOccupied = [&](const LatticeRay& ray, int layer) {
+        const glm::dvec3 uvw = samplePosition(ray, total, layer);
+        const glm::ivec3 block =
+            glm::clamp(glm::ivec3(glm::floor(uvw * blocksPerUvw)), glm::ivec3(0), cloud.blocks - 1);
+        const std::int64_t index =
+            (std::int64_t(block.z) * cloud.blocks.y + block.y) * cloud.blocks.x + block.x;
+        return cloud.counts[std::size_t(index)] == 0;
+    };
     std::int64_t count = 0;
     for (int i = 0; i < e.size.x * e.size.y; ++i) {
         const LatticeRay ray = rayAt(frame, glm::dvec2(i % e.size.x, i / e.size.x) + 0.5);
-        const LayerRange layers = layersOf(ray, e.plan.lattice.total);
-        for (int k = layers.begin; k < layers.end; ++k) {
-            const glm::dvec3 uvw = samplePosition(ray, e.plan.lattice.total, k);
-            const glm::ivec3 block = glm::clamp(glm::ivec3(glm::floor(uvw * blocksPerUvw)),
-                                                glm::ivec3(0), cloud.blocks - 1);
-            const std::int64_t index =
-                (std::int64_t(block.z) * cloud.blocks.y + block.y) * cloud.blocks.x + block.x;
-            if (cloud.counts[std::size_t(index)] == 0) {
-                count += kLoopGroup;
-                k += kLoopGroup - 1;
+        const LayerRange met = layersOf(ray, total);
+        for (int front = 0; front < total; front += e.plan.layersPerPlane) {
+            const int end = std::min(met.end, front + e.plan.layersPerPlane);
+            for (int k = std::max(met.begin, front); k < end; ++k) {
+                if (isOccupied(ray, k)) {
+                    count += kLoopGroup;
+                    k += kLoopGroup - 1;
+                }
             }
         }
     }
