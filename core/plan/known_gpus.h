@@ -15,7 +15,7 @@ struct KnownGpu {
 };
 
 inline constexpr KnownGpu kKnownGpus[] = {
-    {"Mali-G71", "Mali-G71", 16, 0},          {"Mali-G52", "Mali-G52", 32, 0},
+    {"Mali-G71", "Mali-G71", 0, 0},           {"Mali-G52", "Mali-G52", 48, 0},
     {"Mali-G57", "Mali-G57", 16, 0},          {"Adreno (TM) 630", "Adreno 630", 16, 0},
     {"Adreno (TM) 650", "Adreno 650", 8, 0},  {"Adreno (TM) 660", "Adreno 660", 8, 0},
     {"Adreno (TM) 740", "Adreno 740", 16, 0},

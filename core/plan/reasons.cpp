@@ -122,7 +122,8 @@ constexpr ReasonWords kWords[] = {
      "something visible may be at the volume's faces: layers there are weighed by their length "
      "inside"},
     {ReasonId::CutSparesFetches, "interval box", "layers outside would take eight fetches each"},
-    {ReasonId::CutAtPlane, "interval box", "the segment's text is longer than a plane's layers"},
+    {ReasonId::CutAtPlane, "interval box",
+     "a segment\'s groups of layers may reach beyond its plane\'s"},
     {ReasonId::DrawsNothing, "draws nothing",
      "the transfer function makes no value of this volume visible: no program is compiled, no "
      "texture made, no plane drawn"},

@@ -21,7 +21,8 @@ protected:
 };
 
 Settings tightSettings(Classification classification, int layers, LatticeKind lattice) {
-    Settings settings = segments(layers, SegmentForm::Auto);
+    Settings settings =
+        segments(layers, layers == kAll ? SegmentForm::Loop : SegmentForm::Unrolled);
     settings.classification = classification;
     settings.lattice = lattice;
     settings.termination = 0.98;
@@ -87,6 +88,9 @@ TEST_F(IntervalTest, IsCutWhereSomethingMayBeSeenAtAFace) {
     Settings wide = settings;
     wide.tighten = false;
     EXPECT_EQ(decide(scene, wide).variant.interval, Interval::Box);
+    Settings looped = settings; // whose groups begin where leaps end
+    looped.form = SegmentForm::Loop;
+    EXPECT_EQ(decide(scene, looped).variant.interval, Interval::Box);
     Settings uneven = settings;
     uneven.layersPerPlane = 13; // written out as 16
     EXPECT_EQ(decide(scene, uneven).variant.interval, Interval::Box);

@@ -6,10 +6,10 @@ namespace slabcast {
 namespace {
 
 /// Whether planes end where their segments' text does: one that went on would draw the next one's.
+/// A loop's groups begin where a leap ends, and so end anywhere.
 bool textEndsWithPlane(const FramePlan& plan) {
     const int unrolled = plan.variant.unroll;
-    return unrolled > 0 ? unrolled == plan.layersPerPlane
-                        : plan.planes == 1 || plan.layersPerPlane % groupOf(plan.variant) == 0;
+    return unrolled > 0 ? unrolled == plan.layersPerPlane : plan.planes == 1;
 }
 
 /// What cuts a ray's stay where it may be seen, or why cutting it costs less than not to.
