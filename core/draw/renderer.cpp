@@ -74,10 +74,13 @@ Result<void> Renderer::State::needPrograms(const Scene& scene, const FramePlan& 
         return frame.sphereDistance < kNear * frame.radius ||
                variantFor(plan, frame, target.view.frustum) != plan.variant;
     };
-    const bool cuts = views.empty() || std::any_of(views.begin(), views.end(), mayBeCut);
-    const Result<const gl::Program*> cut =
-        needProgram(cuts ? cutVariant(plan) : plan.variant, state);
-    const Result<const gl::Program*> own = cut ? needProgram(plan.variant, state) : cut;
+    const bool opens = plan.variant.interval == Interval::None;
+    if (opens && (views.empty() || std::any_of(views.begin(), views.end(), mayBeCut))) {
+        if (const auto cut = needProgram(cutVariant(plan), state); !cut) {
+            return tl::unexpected(cut.error());
+        }
+    }
+    const Result<const gl::Program*> own = needProgram(plan.variant, state);
     return own ? Result<void>{} : tl::unexpected(own.error());
 }
 

@@ -31,8 +31,7 @@ constexpr ReasonWords kWords[] = {
      "auto: layers of equal view depth; a software driver draws them faster than shells"},
     {ReasonId::ShellsLatticeHere, "shells lattice",
      "auto: layers of equal distance from the eye are of one length, whose opacity need not be "
-     "made "
-     "along every ray"},
+     "made along every ray"},
     {ReasonId::Jitter, "jitter",
      "each ray's layers are moved by up to half a layer: grain, not bands"},
     {ReasonId::RatioAsked, "ratio {ratio 0}", "asked for"},
@@ -123,7 +122,7 @@ constexpr ReasonWords kWords[] = {
      "inside"},
     {ReasonId::CutSparesFetches, "interval box", "layers outside would take eight fetches each"},
     {ReasonId::CutAtPlane, "interval box",
-     "a segment\'s groups of layers may reach beyond its plane\'s"},
+     "a segment's groups of layers may reach beyond its plane's"},
     {ReasonId::DrawsNothing, "draws nothing",
      "the transfer function makes no value of this volume visible: no program is compiled, no "
      "texture made, no plane drawn"},

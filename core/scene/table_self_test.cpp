@@ -5,6 +5,7 @@
 #include "core/gl/program.h"
 #include "core/gl/state_guard.h"
 #include "core/gl/texture_upload.h"
+#include "core/scene/self_test_row.h"
 #include "core/scene/texel_format.h"
 #include "core/scene/volume_texture.h"
 
@@ -16,13 +17,6 @@ namespace {
 constexpr int kTexels = 64;
 constexpr int kSamples = 1024;
 constexpr double kStepOfHalf = 0x1p-10; // relative: a device may take either neighbour
-
-constexpr const char* kVertexText = R"(#version 320 es
-void main() {
-    vec2 corner = vec2((gl_VertexID << 1) & 2, gl_VertexID & 2); // one triangle over the whole target
-    gl_Position = vec4(corner * 2.0 - 1.0, 0.0, 1.0);
-}
-)";
 
 // The position comes back with the sample: the expectation is computed where the table was read.
 constexpr const char* kSampleText = R"(#version 320 es
@@ -63,7 +57,7 @@ Result<std::vector<FilterSample>> drawSamples() {
     }
     const TableTexels table = filteredTableTexels(texels);
     const auto texture = upload2d("table test", table.layout, table.size, table.data);
-    const auto program = gl::buildProgram("table filter test", kVertexText, kSampleText);
+    const auto program = gl::buildProgram("table filter test", kRowVertexText, kSampleText);
     gl::ColorTargets target;
     if (!texture || !program) {
         return tl::unexpected(texture ? program.error() : texture.error());
@@ -73,12 +67,7 @@ Result<std::vector<FilterSample>> drawSamples() {
     }
     const gl::VertexArray vertices = gl::VertexArray::make("table test");
     gl::BindVertexArray(vertices.id());
-    gl::Viewport(0, 0, kSamples, 1);
-    gl::ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    for (const GLenum off : {GL_BLEND, GL_CULL_FACE, GL_DEPTH_TEST, GL_SCISSOR_TEST,
-                             GL_STENCIL_TEST, GL_RASTERIZER_DISCARD}) {
-        gl::Disable(off);
-    }
+    drawPlainly(kSamples);
     program->use();
     gl::ActiveTexture(GL_TEXTURE0); // where the sampler's default of 0 looks
     gl::BindSampler(0, 0);

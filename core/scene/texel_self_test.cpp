@@ -7,6 +7,7 @@
 #include "core/gl/color_targets.h"
 #include "core/gl/program.h"
 #include "core/gl/state_guard.h"
+#include "core/scene/self_test_row.h"
 #include "core/scene/texel_format.h"
 #include "core/scene/volume_texture.h"
 
@@ -17,13 +18,6 @@ namespace slabcast {
 namespace {
 
 constexpr int kSamples = 1024;
-
-constexpr const char* kVertexText = R"(#version 320 es
-void main() {
-    vec2 corner = vec2((gl_VertexID << 1) & 2, gl_VertexID & 2); // one triangle over the whole target
-    gl_Position = vec4(corner * 2.0 - 1.0, 0.0, 1.0);
-}
-)";
 
 // The position comes back with the sample: the expectation is computed where the texture was read.
 constexpr const char* kSampleText = R"(#version 320 es
@@ -165,8 +159,8 @@ class Bench {
 public:
     static Result<Bench> make() {
         Bench bench;
-        auto sample = gl::buildProgram("texel sampling test", kVertexText, kSampleText);
-        auto fetch = gl::buildProgram("texel fetch test", kVertexText, kFetchText);
+        auto sample = gl::buildProgram("texel sampling test", kRowVertexText, kSampleText);
+        auto fetch = gl::buildProgram("texel fetch test", kRowVertexText, kFetchText);
         if (!sample || !fetch) {
             return tl::unexpected(sample ? fetch.error() : sample.error());
         }
@@ -177,12 +171,7 @@ public:
                         "RGBA32F cannot be drawn to, though GLES 3.2 asks for it");
         }
         gl::BindVertexArray(bench.vertexArray_.id());
-        gl::Viewport(0, 0, kSamples, 1);
-        gl::ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-        for (const GLenum off : {GL_BLEND, GL_CULL_FACE, GL_DEPTH_TEST, GL_SCISSOR_TEST,
-                                 GL_STENCIL_TEST, GL_RASTERIZER_DISCARD}) {
-            gl::Disable(off);
-        }
+        drawPlainly(kSamples);
         return bench;
     }
 

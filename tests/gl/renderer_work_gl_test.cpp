@@ -172,7 +172,10 @@ TEST_F(CountersTest, SkippingEvaluatesLessOfTheSameLayers) {
         const WorkCounters some = count(scene, settings, view);
         EXPECT_EQ(some.fragments, all.fragments);
         EXPECT_EQ(some.layersEvaluated + some.layersSkipped, all.layersEvaluated);
-        EXPECT_LT(some.layersEvaluated, all.layersEvaluated / 3);
+        // Written-out groups are evaluated whole, wherever in them the ball is; a loop's begin at
+        // it.
+        const bool loops = decide(scene, settings).variant.unroll == 0;
+        EXPECT_LT(some.layersEvaluated, all.layersEvaluated / (loops ? 5 : 3));
         EXPECT_GT(some.layersEvaluated, 0);
         EXPECT_GT(some.skipFetches, 0);
     }

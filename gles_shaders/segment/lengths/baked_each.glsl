@@ -1,4 +1,5 @@
 // As baked.glsl, for segments so short that each layer is weighed where it is.
+#include "segment/lengths/each_layer.glsl"
 #include "segment/lengths/opacity.glsl"
 #include "segment/lengths/of_opacity.glsl"
 
@@ -12,13 +13,3 @@ void addLayer(inout Sum sum, inout float front, Ray ray, Segment segment, float 
     float part = partInside(segment, k);
     add(sum, mix(ofLength(layer, part), layer, bvec4(part == 1.0)));
 }
-
-Segment composited(Segment segment) {
-    return segment;
-}
-float layersInGroups(Segment segment);
-float layersOf(Segment segment) {
-    return layersInGroups(segment);
-}
-void addEntry(inout Sum sum, Ray ray, Segment segment) {}
-void addExit(inout Sum sum, Ray ray, Segment segment) {}

@@ -1,4 +1,5 @@
 // Layers are of another length along every ray: their opacity is made here, of what is inside.
+#include "segment/lengths/each_layer.glsl"
 #include "segment/lengths/opacity.glsl"
 #include OF_LENGTH_FILE
 
@@ -11,14 +12,3 @@ void addLayer(inout Sum sum, inout float front, Ray ray, Segment segment, float 
     float perLayer = ray.layerLength * step0.w;
     add(sum, ofLength(layerAt(ray, segment, k, front), perLayer * partInside(segment, k)));
 }
-
-/// Every layer is weighed, those at the ends too.
-Segment composited(Segment segment) {
-    return segment;
-}
-float layersInGroups(Segment segment);
-float layersOf(Segment segment) {
-    return layersInGroups(segment);
-}
-void addEntry(inout Sum sum, Ray ray, Segment segment) {}
-void addExit(inout Sum sum, Ray ray, Segment segment) {}
