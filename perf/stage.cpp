@@ -25,14 +25,19 @@ glm::dmat4 turned(double degrees, const BoundingSphere& sphere) {
            back;
 }
 
+Settings settingsFor(Classification classification, const StageDesc& desc) {
+    Settings settings = desc.settings;
+    settings.classification = classification;
+    return settings;
+}
+
 /// What the texels take where they are classified so. Fails: as checkFits() and forecastMemory().
 Result<MemoryForecast> checkMemory(const VolumeInfo& info, TexelFormat format,
                                    Classification classification, const StageDesc& desc,
                                    const gl::Caps& caps) {
-    const bool preclassified = classification == Classification::Pre;
-    return checkFits(info.dims, uploadedBytesPerTexel(format, preclassified), caps,
-                     desc.gpuBudgetBytes)
-        .and_then([&] { return forecastMemory(info.dims, info.type, format, preclassified); });
+    const Needs needs = needsOf(settingsFor(classification, desc));
+    return checkFits(info.dims, uploadedBytesPerVoxel(format, needs), caps, desc.gpuBudgetBytes)
+        .and_then([&] { return forecastMemory(info.dims, info.type, format, needs); });
 }
 
 } // namespace
@@ -94,10 +99,8 @@ Result<void> Stage::setLook(TransferFunction tf, Classification classification) 
     // Towards the eye: a baked head light stands where the eye is at the first frame.
     const glm::dmat3 rotation(viewFromModel(desc_.camera, scene().geometry().boundingSphere()));
     look.bakedLightDirection = glm::transpose(rotation) * glm::dvec3(0.0, 0.0, 1.0);
-    Settings settings = desc_.settings;
-    settings.classification = classification;
     return scene_.setLook(std::move(look)).and_then([&] {
-        return renderer_.provide(scene_, needsOf(settings));
+        return renderer_.provide(scene_, needsOf(settingsFor(classification, desc_)));
     });
 }
 

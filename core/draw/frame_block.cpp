@@ -11,8 +11,8 @@ namespace slabcast {
 
 namespace {
 
-/// smoothstep() needs two different edges, also for data without any gradient.
-constexpr double kLeastGradient = 1e-30;
+/// A floor that is far below what the least step of a texel makes, for data without any gradient.
+constexpr double kLeastFloor = 1e-9;
 
 constexpr int kToInitialLevel = 31; // levels: more than any octree has
 
@@ -58,15 +58,16 @@ void fillSkip(FrameBlock& block, const BuiltSkip& skip, glm::ivec3 dims, double 
 }
 
 void fillShading(FrameBlock& block, const ShadingParameters& shading,
-                 const VolumeGeometry& geometry, double valueScale) {
+                 const VolumeGeometry& geometry, double valueScale, double steepestPerMm) {
     // A difference over one voxel is dims times its derivative by uvw; gradients are covectors:
     // inverse transpose.
     const glm::dmat3 uvwFromModel(geometry.uvwFromModel());
     const glm::dmat3 patientRows = glm::transpose(glm::dmat3(geometry.modelFromUvw()));
+    const double ofOneTexelStep = valueScale / geometry.smallestVoxelEdgeMm();
+    const double floor = std::max(shading.gradientFloorPerMm, kLeastFloor * ofOneTexelStep);
     for (int row = 0; row < 3; ++row) {
         const glm::dvec3 covector = uvwFromModel[row] * glm::dvec3(geometry.dims) * valueScale;
-        block.gradientRow[row] =
-            packed(covector, row == 0 ? std::max(shading.gradientFloorPerMm, kLeastGradient) : 0.0);
+        block.gradientRow[row] = packed(covector / floor, row == 0 ? steepestPerMm / floor : 0.0);
         block.patientRow[row] = packed(patientRows[row], 0.0);
     }
     block.material = glm::vec4(
@@ -132,7 +133,9 @@ FrameBlock makeFrameBlock(const RayFrame& f, const Scene& scene, const FramePlan
         fillSkip(block, scene.skip(), scene.geometry().dims, f.spacing * f.mmPerViewUnit);
     }
     if (plan.variant.shaded) {
-        fillShading(block, scene.look().shading, scene.geometry(), scene.texels().valueScale);
+        const NormalTexels* normals = scene.normals();
+        fillShading(block, scene.look().shading, scene.geometry(), scene.texels().valueScale,
+                    normals != nullptr ? normals->steepestPerMm : 0.0);
     }
     block.counts.y = plan.layersPerPlane;
     block.jitter = {glm::ivec2(f.viewportCorner), 0, 0};

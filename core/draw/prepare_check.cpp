@@ -15,7 +15,8 @@ Result<void> refused(std::string why) {
 /// texture is read.
 Result<void> checkProvided(const FramePlan& plan, const Needs& provided) {
     if (plan.variant.classification != provided.classification || plan.space != provided.space ||
-        (plan.variant.shaded && !provided.shaded)) {
+        (plan.variant.shaded && !provided.shaded) ||
+        (plan.variant.normals == Normals::Baked && !provided.normals)) {
         return refused("the plan is of another classification, shading or space than what was "
                        "provided: provide what the plan needs, then plan anew");
     }

@@ -37,7 +37,8 @@
     FIELD(vec4, skipMap, 1)                                                                        \
     /* xy: sampled value of an exact texel = dot(texel.rg, xy) */                                  \
     FIELD(vec4, decode, 1)                                                                         \
-    /* rows: patient-space gradient from differences per voxel; w of 0: floor */                   \
+    /* rows: patient-space gradient from differences per voxel, in units of the floor; w of 0: the \
+       steepest that baked normals hold, in floors */                                              \
     FIELD(vec4, gradientRow, 3)                                                                    \
     /* rows: patient-space direction from one in uvw */                                            \
     FIELD(vec4, patientRow, 3)                                                                     \

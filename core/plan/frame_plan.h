@@ -12,6 +12,7 @@
 #include "core/plan/shader_variant.h"
 #include "core/transfer/transfer_function.h"
 #include "core/view/lattice.h"
+#include "core/volume/normals.h"
 
 namespace slabcast {
 
@@ -30,6 +31,7 @@ struct SceneFacts {
     bool wideTable = false;                   // extinction spans more than fp16 keeps
     bool filtersTable = false;                // the device's filter may read the table
     std::optional<double> classifiedLengthMm; // of a layer, in pre-classified texels
+    NormalsError normals;                     // of baked ones
     bool facesAreClear = false;               // nothing visible is in a block at the volume's faces
     bool isEdited = false;                    // its look may be another one in the next frame
 };

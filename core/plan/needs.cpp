@@ -3,8 +3,10 @@
 namespace slabcast {
 
 Needs needsOf(const Settings& settings) {
-    Needs needs{settings.classification, settings.space, settings.shaded, settings.skipOptions,
-                settings.skipBuilder};
+    const bool normals = settings.shaded && settings.classification == Classification::Post &&
+                         settings.normals == Normals::Baked;
+    Needs needs{settings.classification, settings.space,      settings.shaded, normals,
+                settings.skipOptions,    settings.skipBuilder};
     needs.skip.structure = settings.skip.value_or(settings.skipOptions.structure);
     if (settings.tighten && needs.skip.structure == SkipStructure::None) {
         needs.skip.structure = SkipStructure::Blocks;

@@ -11,6 +11,7 @@ struct Needs {
     Classification classification = Classification::Post;
     CompositingSpace space = CompositingSpace::Display;
     bool shaded = false; // of pre-classified texels: the light is in them
+    bool normals = false; // baked, of what is shaded sample by sample
     SkipOptions skip{.structure = SkipStructure::None};
     SkipBuilder builder = SkipBuilder::Auto; // who builds the structure; never what is built
 

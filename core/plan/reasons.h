@@ -27,6 +27,7 @@ enum class ReasonId : std::uint8_t {
     ClassificationOfIntervals,
     ClassificationUnlit,
     ClassificationLit,
+    ClassificationLitByNormals,
     ClassificationBaked,
     LengthsBaked,
     LengthsPerRay,

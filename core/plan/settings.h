@@ -41,6 +41,7 @@ struct Settings {
     TargetFormat target = TargetFormat::Rgba8;
     CompositingSpace space = CompositingSpace::Display;
     bool shaded = false;
+    Normals normals = Normals::Computed; // of what is shaded sample by sample
     std::optional<BlendOrder> order;
     /// Opacity at which a segment is left and, front to back, a pixel: what is lost behind is at
     /// most one 8-bit step.

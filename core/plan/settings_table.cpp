@@ -17,6 +17,7 @@ constexpr const char* kClassifications[] = {"post", "preclassified", "preintegra
 constexpr const char* kTargets[] = {"rgba8", "rgba16f"};
 constexpr const char* kSpaces[] = {"display", "linear"};
 constexpr const char* kShades[] = {"off", "phong"};
+constexpr const char* kNormals[] = {"computed", "baked"};
 constexpr const char* kLattices[] = {"planar", "shells"};
 constexpr const char* kForms[] = {"auto", "unrolled", "loop"};
 constexpr const char* kOrders[] = {"back-to-front", "front-to-back"};
@@ -127,6 +128,13 @@ constexpr Setting kTable[] = {
         .words = kShades,
         .help = "Blinn-Phong with a head light"},
        SLABCAST_MEMBER(shaded)),
+    of({.name = "normals",
+        .group = kLook,
+        .kind = SettingKind::Choice,
+        .words = kNormals,
+        .help = "of shaded samples: from six samples around each, or from one of a texture that is "
+                "baked beforehand, 4 bytes a voxel"},
+       SLABCAST_MEMBER(normals)),
     of({.name = "layer-spacing",
         .group = kLayers,
         .kind = SettingKind::Real,

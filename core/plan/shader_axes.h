@@ -19,6 +19,7 @@ enum class Axis : std::uint8_t {
     Classification,
     Skip,
     Shading,
+    Normals,
     Field,
     Material,
     Table,
@@ -129,6 +130,14 @@ inline constexpr AxisValue kShading[] = {
      .suffix = "+shaded",
      .files = {{"SHADING_FILE", "segment/shading/phong.glsl"}},
      .fields = {"gradientRow", "patientRow", "material"}},
+};
+
+inline constexpr AxisValue kNormals[] = {
+    {.name = "computed", .files = {{"NORMALS_FILE", "segment/normals/computed.glsl"}}},
+    {.name = "baked",
+     .suffix = "+normals",
+     .files = {{"NORMALS_FILE", "segment/normals/baked.glsl"}},
+     .samplers = {Sampler::Normals}},
 };
 
 inline constexpr AxisValue kField[] = {
@@ -273,6 +282,7 @@ inline constexpr AxisInfo kAxes[] = {
     axes::axis<&ShaderVariant::classification>("classification", axes::kClassification),
     axes::axis<&ShaderVariant::skip>("skip", axes::kSkip),
     axes::axis<&ShaderVariant::shaded>("shading", axes::kShading),
+    axes::axis<&ShaderVariant::normals>("normals", axes::kNormals),
     axes::axis<&ShaderVariant::exactField>("field", axes::kField),
     axes::axis<&ShaderVariant::material>("material", axes::kMaterial),
     axes::axis<&ShaderVariant::table>("table", axes::kTable),
@@ -292,6 +302,7 @@ inline constexpr AxisInfo kAxes[] = {
 inline constexpr Requirement kRequirements[] = {
     // Gradients need the field; pre-classified texels hold their light, intervals have none.
     {Axis::Shading, 1, Axis::Classification, {0}},
+    {Axis::Normals, 1, Axis::Shading, {1}},
     // Pre-classified texels are colours, not a field.
     {Axis::Field, 1, Axis::Classification, {0, 2}},
     // A table of single values is post-classification's; texels that are interpolated in float32

@@ -20,6 +20,9 @@ enum class TableRead : std::uint8_t { Exact, Filtered };
 /// Where a layer's opacity is made from its length: along every ray, or once, where layers are all
 /// of one length, in the table or the pre-classified texels.
 enum class Lengths : std::uint8_t { PerRay, Baked };
+/// Where a shaded sample's gradient comes from: six samples around it, or a texture of normals that
+/// was baked beforehand.
+enum class Normals : std::uint8_t { Computed, Baked };
 /// What a ray's stay is cut to. None: what is visible keeps clear of all that would cut it.
 enum class Interval : std::uint8_t { Box, None };
 /// What is made of a ray's layers.
@@ -53,6 +56,7 @@ struct ShaderVariant {
     bool counts = false;
     LatticeKind lattice = LatticeKind::Planar;
     bool jittered = false;
+    Normals normals = Normals::Computed;
     Material material = Material::Transfer;
     TableRead table = TableRead::Exact;
     Lengths lengths = Lengths::PerRay;

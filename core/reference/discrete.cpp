@@ -6,8 +6,8 @@
 
 #include "core/base/parallel.h"
 #include "core/reference/material.h"
-#include "core/reference/trilinear_field.h"
 #include "core/transfer/transfer_integral.h"
+#include "core/volume/trilinear_field.h"
 
 namespace slabcast {
 
@@ -20,40 +20,44 @@ glm::dvec4 materialOf(const TransferTable& table, CompositingSpace /*space*/, do
 /// Blinn-Phong under a head light: the half vector is the direction to the eye itself.
 class HeadLight {
 public:
-    HeadLight(const ShadingParameters& parameters, const VolumeGeometry& geometry)
+    HeadLight(const ShadingParameters& parameters, const VolumeGeometry& geometry,
+              const NormalTexels* normals)
         : parameters_(parameters), modelFromUvw_(geometry.modelFromUvw()),
-          modelFromUvwCovector_(glm::transpose(glm::dmat3(geometry.uvwFromModel()))) {}
+          modelFromUvwCovector_(glm::transpose(glm::dmat3(geometry.uvwFromModel()))),
+          normals_(normals) {}
 
     template <class Field>
     glm::dvec3 shade(glm::dvec3 color, const Field& field, glm::dvec3 uvw, glm::dvec3 step) const {
-        const glm::dvec3 gradient = modelFromUvwCovector_ * uvwGradient(field, uvw);
-        const double steepness = glm::length(gradient);
-        const double weight = shadingWeight(parameters_, steepness);
+        const glm::dvec4 found = gradientAt(field, uvw);
+        const double weight = shadingWeight(parameters_, found.w);
+        const glm::dvec3 gradient(found);
+        const double length = glm::length(gradient);
         if (weight == 0.0) {
             return color;
         }
         const glm::dvec3 alongRay = glm::normalize(modelFromUvw_ * step);
-        const double facing = std::abs(glm::dot(gradient, alongRay)) / steepness;
+        const double facing = length > 0.0 ? std::abs(glm::dot(gradient, alongRay)) / length : 0.0;
         const glm::dvec3 lit = color * diffuseLight(parameters_, facing) +
                                parameters_.specular * std::pow(facing, parameters_.shininess);
         return glm::mix(color, glm::min(lit, glm::dvec3(1.0)), weight);
     }
 
 private:
+    /// In patient space: a direction of any length, and the steepness per mm.
     template <class Field>
-    static glm::dvec3 uvwGradient(const Field& field, glm::dvec3 uvw) {
-        glm::dvec3 gradient;
-        for (int axis = 0; axis < 3; ++axis) {
-            glm::dvec3 half(0.0);
-            half[axis] = 0.5 / field.dims()[axis];
-            gradient[axis] = (field.at(uvw + half) - field.at(uvw - half)) * field.dims()[axis];
+    glm::dvec4 gradientAt(const Field& field, glm::dvec3 uvw) const {
+        if (normals_ != nullptr) {
+            const glm::dvec4 texel = normals_->at(uvw);
+            return {glm::dvec3(texel), normals_->steepnessPerMm(texel)};
         }
-        return gradient;
+        const glm::dvec3 gradient = modelFromUvwCovector_ * uvwGradient(field, uvw);
+        return {gradient, glm::length(gradient)};
     }
 
     ShadingParameters parameters_;
     glm::dmat3 modelFromUvw_;
     glm::dmat3 modelFromUvwCovector_; // gradients transform by the inverse transpose
+    const NormalTexels* normals_;     // null: the field's own gradients
 };
 
 /// A layer of a ray.
@@ -103,7 +107,7 @@ struct PreClassified {
     ColorsAround colorsAround;
 
     glm::dvec4 operator()(const Layer& layer) const {
-        const glm::dvec4 texel = filtered(layer.middle());
+        const glm::dvec4 texel = filteredTexels(dims, layer.middle(), colorsAround);
         if (texel.w == 0.0) {
             return glm::dvec4(0.0);
         }
@@ -111,21 +115,6 @@ struct PreClassified {
             -std::log(std::max(1.0 - texel.w, 1e-30)) * (layer.lengthMm() / referenceLengthMm);
         const double alpha = -std::expm1(-depth);
         return {glm::dvec3(texel) * (alpha / texel.w), alpha};
-    }
-
-private:
-    glm::dvec4 filtered(glm::dvec3 uvw) const {
-        const glm::dvec3 place = glm::clamp(uvw * dims - 0.5, glm::dvec3(0.0), dims - 1.0);
-        const glm::ivec3 cell(place);
-        const glm::dvec3 upper = place - glm::dvec3(cell);
-        const std::array<glm::dvec4, 8> colors = colorsAround(cell);
-        glm::dvec4 sum(0.0);
-        for (int k = 0; k < 8; ++k) {
-            const glm::dvec3 share =
-                glm::mix(1.0 - upper, upper, glm::dvec3(k & 1, k >> 1 & 1, k >> 2));
-            sum += share.x * share.y * share.z * colors[k];
-        }
-        return sum;
     }
 };
 
@@ -152,7 +141,8 @@ struct Classifiers {
     template <class Transfer> // the continuous TF or its table
     auto of(const Transfer& transfer) const {
         const auto light =
-            input.shading ? std::optional(HeadLight(*input.shading, input.geometry)) : std::nullopt;
+            input.shading ? std::optional(HeadLight(*input.shading, input.geometry, input.normals))
+                          : std::nullopt;
         return PostClassified<Field, Transfer>{field, transfer, input.space, light};
     }
     auto of(const PreclassifiedExact& exact) const {
@@ -171,13 +161,10 @@ struct Classifiers {
     auto of(const ClassifiedTexels* classified) const {
         SLABCAST_EXPECTS(classified != nullptr && classified->dims == input.texels->dims, 0);
         return preClassified(classified->referenceLengthMm, [classified](glm::ivec3 cell) {
-            const glm::ivec3 dims = classified->dims;
-            std::array<glm::dvec4, 8> colors;
-            for (int k = 0; k < 8; ++k) {
-                const glm::i64vec3 v =
-                    glm::min(cell + glm::ivec3(k & 1, k >> 1 & 1, k >> 2), dims - 1);
-                const auto index = static_cast<std::size_t>((v.z * dims.y + v.y) * dims.x + v.x);
-                colors[k] = glm::dvec4(classified->texels[index]) / 255.0;
+            std::array<glm::dvec4, 8> colors =
+                texelsAround(classified->texels, classified->dims, cell);
+            for (glm::dvec4& color : colors) {
+                color /= 255.0;
             }
             return colors;
         });

@@ -11,6 +11,7 @@
 #include "core/transfer/shading.h"
 #include "core/transfer/transfer_function.h"
 #include "core/view/lattice.h"
+#include "core/volume/normals.h"
 #include "core/volume/texels.h"
 
 namespace slabcast {
@@ -42,6 +43,7 @@ struct DiscreteInput {
     DiscreteTransfer transfer;
     CompositingSpace space = CompositingSpace::Display;
     std::optional<ShadingParameters> shading; // none: unlit, as all but post-classified is
+    const NormalTexels* normals = nullptr;    // baked; null: the field's own gradients
     View view;
     Viewport viewport;
     Lattice lattice;
@@ -55,9 +57,9 @@ struct DiscreteInput {
 /// is 1 - exp(-extinction * its length inside). A layer's sample is in its middle, or for
 /// pre-integration there is one at either end of its part inside. Shading is shading.h's model
 /// under a head light: light and eye lie in one direction, the gradient is by central differences
-/// of the field, half a voxel to each side, in patient space. Premultiplied RGBA in the compositing
-/// space, row by row from the bottom. Cost: O(pixels * layers met), all cores. Tested by:
-/// discrete_test.cpp
+/// of the field, half a voxel to each side, in patient space, or of baked normals. Premultiplied
+/// RGBA in the compositing space, row by row from the bottom. Cost: O(pixels * layers met), all
+/// cores. Tested by: discrete_test.cpp
 std::vector<glm::dvec4> renderDiscrete(const DiscreteInput& input);
 
 } // namespace slabcast

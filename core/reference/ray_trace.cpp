@@ -7,7 +7,7 @@
 #include "core/reference/emission_integral.h"
 #include "core/reference/material.h"
 #include "core/reference/stretches.h"
-#include "core/reference/trilinear_field.h"
+#include "core/volume/trilinear_field.h"
 
 namespace slabcast {
 

@@ -18,6 +18,10 @@ constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
 /// Uploaded at a time: the driver's copies stay small beside the structure.
 constexpr std::int64_t kStagingBytes = 16 << 20;
 
+int normalsOf(const Scene& scene) {
+    return scene.normals() != nullptr ? scene.normalsGeneration() : 0;
+}
+
 /// Keeps the texture, or hands on what went wrong.
 Result<void> keep(gl::Texture& slot, Result<gl::Texture> made) {
     if (!made) {
@@ -31,7 +35,8 @@ Result<void> keep(gl::Texture& slot, Result<gl::Texture> made) {
 
 GpuScene::Sources GpuScene::needs(const Scene& scene, const FramePlan& plan) {
     if (plan.drawsNothing) { // for now, where the TF may be another one in the next frame
-        return {scene.live() != nullptr ? scene.texelsGeneration() : 0, 0, {}};
+        const bool stays = scene.live() != nullptr;
+        return {stays ? scene.texelsGeneration() : 0, 0, stays ? normalsOf(scene) : 0, {}};
     }
     const int look = scene.lookGeneration();
     const bool pre = plan.variant.classification == Classification::Pre;
@@ -39,6 +44,7 @@ GpuScene::Sources GpuScene::needs(const Scene& scene, const FramePlan& plan) {
     const bool baked = post && plan.variant.lengths == Lengths::Baked;
     return {pre ? look : scene.texelsGeneration(),
             pre ? 0 : look,
+            plan.variant.normals == Normals::Baked ? scene.normalsGeneration() : 0,
             {plan.variant.table == TableRead::Filtered, baked ? plan.lattice.spacingMm : 0.0}};
 }
 
@@ -89,6 +95,7 @@ Result<void> GpuScene::update(const Scene& scene, const FramePlan& plan, const g
     const Sources needed = needs(scene, plan);
     const bool pre = plan.variant.classification == Classification::Pre;
     return updateVolume(scene, pre, needed.volume, caps, state)
+        .and_then([&] { return updateNormals(scene, needed.normals, caps, state); })
         .and_then([&] { return updateTable(scene, needed, caps, state); })
         .and_then([&] { return updateSkips(scene, plan, caps, state); });
 }
@@ -224,6 +231,25 @@ Result<void> GpuScene::updateVolume(const Scene& scene, bool pre, int generation
     return done;
 }
 
+Result<void> GpuScene::updateNormals(const Scene& scene, int generation, const gl::Caps& caps,
+                                     gl::StateScope& state) {
+    if (held_.normals == generation) {
+        return {};
+    }
+    state.touch();
+    held_.normals = 0;
+    normals_.release(); // before the next are allocated: two may not fit
+    normalsBytes_ = 0;
+    if (generation == 0) {
+        return {};
+    }
+    SLABCAST_EXPECTS(scene.normals() != nullptr, generation);
+    return keep(normals_, uploadNormals(*scene.normals(), caps)).map([&] {
+        normalsBytes_ = scene.geometry().voxelCount() * normalsLayout().bytesPerTexel;
+        held_.normals = generation;
+    });
+}
+
 Result<GLuint> GpuScene::volumeTexture(const Scene& scene, bool pre, const gl::Caps& caps,
                                        gl::StateScope& state) {
     const int generation = pre ? scene.lookGeneration() : scene.texelsGeneration();
@@ -258,6 +284,7 @@ void GpuScene::bind(const BuiltSkip& skip) const {
     } textures[] = {{Sampler::Table, GL_TEXTURE_2D, table_.id()},
                     {Sampler::Skip, GL_TEXTURE_3D,
                      skipTexture != nullptr ? skipTexture->texture.texture.id() : 0},
+                    {Sampler::Normals, GL_TEXTURE_3D, normals_.id()},
                     {Sampler::Volume, GL_TEXTURE_3D, volume_.id()}};
     static_assert(unitOf(Sampler::Volume) == 0); // the last: passes after this bind to unit 0
     for (const auto& one : textures) {
@@ -272,6 +299,7 @@ void GpuScene::bind(const BuiltSkip& skip) const {
 
 void GpuScene::forget() {
     volume_.forget();
+    normals_.forget();
     table_.forget();
     for (HeldSkip& one : skips_) {
         one.texture.texture.forget();

@@ -37,7 +37,7 @@ public:
     void bind(const BuiltSkip& skip) const;
     int tableWidth() const { return table_.width(); }
 
-    std::int64_t volumeBytes() const { return volumeBytes_; }
+    std::int64_t volumeBytes() const { return volumeBytes_ + normalsBytes_; } // with its normals
     std::int64_t skipBytes() const; // of all structures, and of spare ones
     std::int64_t tableBytes() const { return table_.bytes(); }
 
@@ -49,6 +49,7 @@ private:
     struct Sources {
         int volume = 0;
         int table = 0;
+        int normals = 0;
         TableTexture::Content tableContent;
         bool operator==(const Sources&) const = default;
     };
@@ -72,6 +73,8 @@ private:
                               gl::StateScope& state);
     Result<void> updateTable(const Scene& scene, const Sources& needed, const gl::Caps& caps,
                              gl::StateScope& state);
+    Result<void> updateNormals(const Scene& scene, int generation, const gl::Caps& caps,
+                               gl::StateScope& state);
     Result<void> updateSkips(const Scene& scene, const FramePlan& plan, const gl::Caps& caps,
                              gl::StateScope& state);
     Result<void> needOctree(const BuiltSkip& skip, const gl::Caps& caps);
@@ -80,10 +83,12 @@ private:
 
     Sources held_;
     gl::Texture volume_;
+    gl::Texture normals_;
     TableTexture table_;
     std::vector<HeldSkip> skips_;
     std::vector<HeldSkip> spares_; // of grids, longest unused first: no frame allocates anew
     std::int64_t volumeBytes_ = 0;
+    std::int64_t normalsBytes_ = 0;
 };
 
 } // namespace slabcast

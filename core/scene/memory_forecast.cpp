@@ -74,22 +74,27 @@ Result<void> checkExtent(glm::ivec3 dims, std::int64_t bytesPerTexel, const Limi
 
 } // namespace
 
-std::int64_t uploadedBytesPerTexel(TexelFormat format, bool preclassified) {
-    return (preclassified ? classifiedLayout() : texelLayoutOf(format)).bytesPerTexel;
+std::int64_t uploadedBytesPerVoxel(TexelFormat format, const Needs& needs) {
+    const bool preclassified = needs.classification == Classification::Pre;
+    return (preclassified ? classifiedLayout() : texelLayoutOf(format)).bytesPerTexel +
+           (needs.normals ? normalsLayout().bytesPerTexel : 0);
 }
 
 Result<MemoryForecast> forecastMemory(glm::ivec3 dims, VoxelType type, TexelFormat format,
-                                      bool preclassified) {
+                                      const Needs& needs) {
+    const bool preclassified = needs.classification == Classification::Pre;
     const auto voxels = checkedByteCount(glm::i64vec3(dims), type);
     const auto texels = forecastTextureBytes(dims, format);
-    const auto uploaded = textureBytes(dims, uploadedBytesPerTexel(format, preclassified));
+    const auto uploaded = textureBytes(dims, uploadedBytesPerVoxel(format, needs));
+    const auto normals =
+        needs.normals ? textureBytes(dims, normalsLayout().bytesPerTexel) : Result<std::int64_t>(0);
     // Texels as long as voxels take their place: encodeTexels().
     const bool inPlace = bytesPerTexel(format) == bytesPerVoxel(type);
     // Of 8-bit scalars they are the texels themselves, of pre-classified ones their alphas.
     const bool ownCodes = format == TexelFormat::R8 && !preclassified;
     const auto codes =
         ownCodes ? Result<std::int64_t>(0) : textureBytes(dims, preclassified ? 1 : 2);
-    for (const Result<std::int64_t>* part : {&voxels, &texels, &uploaded, &codes}) {
+    for (const Result<std::int64_t>* part : {&voxels, &texels, &uploaded, &normals, &codes}) {
         if (!*part) {
             return tl::unexpected(part->error());
         }
@@ -98,6 +103,7 @@ Result<MemoryForecast> forecastMemory(glm::ivec3 dims, VoxelType type, TexelForm
                           .hostVoxelBytes = *voxels,
                           .hostTexelBytes = inPlace ? 0 : *texels,
                           .hostClassifiedBytes = preclassified ? *uploaded : 0,
+                          .hostNormalsBytes = *normals,
                           .hostCodeBytes = *codes};
 }
 

@@ -6,29 +6,32 @@
 #include <glm/glm.hpp>
 
 #include "core/gl/caps.h"
+#include "core/plan/needs.h"
 #include "core/volume/texels.h"
 
 namespace slabcast {
 
 /// What showing a volume takes, before anything is allocated.
 struct MemoryForecast {
-    std::int64_t gpuTexelBytes = 0;
+    std::int64_t gpuTexelBytes = 0;  // with normals
     std::int64_t hostVoxelBytes = 0; // the volume as loaded
     std::int64_t hostTexelBytes = 0; // what is uploaded, or classified first; 0: as the voxels
     std::int64_t hostClassifiedBytes = 0;
+    std::int64_t hostNormalsBytes = 0;
     std::int64_t hostCodeBytes = 0; // codes that the skip structures are built from
     std::int64_t hostBytes() const {
-        return hostVoxelBytes + hostTexelBytes + hostClassifiedBytes + hostCodeBytes;
+        return hostVoxelBytes + hostTexelBytes + hostClassifiedBytes + hostNormalsBytes +
+               hostCodeBytes;
     }
 };
 
-/// Bytes per texel of the texture that is drawn from: the scalars' or, `preclassified`, the
-/// colours'.
-std::int64_t uploadedBytesPerTexel(TexelFormat format, bool preclassified);
+/// Bytes per voxel of the textures that are drawn from: the scalars' or the pre-classified
+/// colours', and baked normals'.
+std::int64_t uploadedBytesPerVoxel(TexelFormat format, const Needs& needs);
 
 /// Fails: EmptyVolume, SizeOverflow. Tested by: texel_format_gl_test.cpp
 Result<MemoryForecast> forecastMemory(glm::ivec3 dims, VoxelType type, TexelFormat format,
-                                      bool preclassified = false);
+                                      const Needs& needs = {});
 
 /// Fails: EmptyVolume, SizeOverflow.
 Result<std::int64_t> forecastTextureBytes(glm::ivec3 dims, TexelFormat format);

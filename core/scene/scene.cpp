@@ -64,13 +64,17 @@ struct Scene::State {
     TransferTable table;           // of no use beside a pre-integrated one
     std::optional<PreintegratedTable> preintegrated;
     std::optional<ClassifiedTexels> classified;
+    std::shared_ptr<const NormalTexels> normals;
     BuiltSkip skip = noSkip(); // while the scene is not edited
     std::optional<LiveSkip> live;
     CellVisibility editedVisibility; // of the last edit: room for the next
     int texelsGeneration = 0;
     int lookGeneration = 0;
+    int normalsGeneration = 0;
 
     Result<void> provideLook(const Needs& needs);
+    Result<void> provideNormals(bool needed);
+    double defaultGradientFloorPerMm() const;
     void buildTable();
     Result<void> needCodes();
     const TransferTable& servingTable() const {
@@ -135,7 +139,7 @@ Result<void> Scene::setLook(Look look) {
     }
     look.tf = std::move(*tf);
     if (look.shading.gradientFloorPerMm <= 0.0) {
-        look.shading.gradientFloorPerMm = defaultGradientFloorPerMm();
+        look.shading.gradientFloorPerMm = state_->defaultGradientFloorPerMm();
     }
     state_->look = std::move(look);
     state_->live.reset(); // of a copy of an edited scene: its structures are under that one's TF
@@ -189,17 +193,43 @@ Result<void> Scene::State::provideLook(const Needs& needs) {
     return {};
 }
 
+/// They are of the texels and no look, but for a floor so high that it needs a wider scale.
+Result<void> Scene::State::provideNormals(bool needed) {
+    constexpr double kSteepestInFloors = 100.0;
+    provided->normals = needed;
+    if (!needed) {
+        normals.reset();
+        return {};
+    }
+    const double floor = look.shading.gradientFloorPerMm;
+    const double wanted = std::max(kSteepestInFloors * defaultGradientFloorPerMm(), 2.0 * floor);
+    const double steepest = wanted > 0.0 ? wanted : 1.0; // of constant data, which has no gradient
+    if (normals && normals->steepestPerMm == steepest) {
+        return {};
+    }
+    if (texels->data.empty()) {
+        return fail(ErrorCode::InvalidArgument, kTexelsAreGone);
+    }
+    normals.reset(); // before the next are made: two may not fit
+    normals = std::make_shared<const NormalTexels>(bakeNormals(*texels, geometry, steepest, floor));
+    normalsGeneration = nextGeneration();
+    return {};
+}
+
 Result<void> Scene::provide(const Needs& needs) {
     if (provides(needs)) {
         return {};
     }
-    return state_->provideLook(needs).and_then([&] {
-        state_->skip = noSkip();
-        return needs.skip.structure == SkipStructure::None
-                   ? Result<void>{}
-                   : buildSkip(
-                         [&](const SkipSource& s) { return slabcast::buildSkip(s, needs.skip); });
-    });
+    return state_->provideLook(needs)
+        .and_then([&] { return state_->provideNormals(needs.normals); })
+        .and_then([&] {
+            state_->skip = noSkip();
+            return needs.skip.structure == SkipStructure::None
+                       ? Result<void>{}
+                       : buildSkip([&](const SkipSource& s) {
+                             return slabcast::buildSkip(s, needs.skip);
+                         });
+        });
 }
 
 std::optional<Needs> Scene::provided() const {
@@ -214,6 +244,7 @@ bool Scene::provides(const Needs& needs) const {
     const SkipOptions& built = skip().options;
     return state_->provided && state_->provided->classification == needs.classification &&
            state_->provided->space == needs.space && state_->provided->shaded == needs.shaded &&
+           state_->provided->normals == needs.normals &&
            (built == needs.skip || (built.structure == SkipStructure::None &&
                                     needs.skip.structure == SkipStructure::None));
 }
@@ -334,6 +365,14 @@ const ClassifiedTexels* Scene::classified() const {
     return state_->classified ? &*state_->classified : nullptr;
 }
 
+const NormalTexels* Scene::normals() const {
+    return state_->normals.get();
+}
+
+int Scene::normalsGeneration() const {
+    return state_->normalsGeneration;
+}
+
 const PreintegratedTable* Scene::preintegrated() const {
     return state_->preintegrated ? &*state_->preintegrated : nullptr;
 }
@@ -386,6 +425,9 @@ SceneFacts Scene::facts() const {
     if (state_->classified) {
         facts.classifiedLengthMm = state_->classified->referenceLengthMm;
     }
+    if (state_->normals) {
+        facts.normals = state_->normals->error;
+    }
     facts.visibleColorRange = visibleColorRange(state_->look.tf, state_->statistics.min,
                                                 state_->statistics.max, state_->provided->space);
     facts.anythingVisible =
@@ -394,9 +436,13 @@ SceneFacts Scene::facts() const {
 }
 
 double Scene::defaultGradientFloorPerMm() const {
+    return state_->defaultGradientFloorPerMm();
+}
+
+double Scene::State::defaultGradientFloorPerMm() const {
     constexpr double kShareOfRangePerVoxel = 0.005;
-    const ValueRange range = state_->statistics.shown();
-    return kShareOfRangePerVoxel * (range.max - range.min) / state_->geometry.smallestVoxelEdgeMm();
+    const ValueRange range = statistics.shown();
+    return kShareOfRangePerVoxel * (range.max - range.min) / geometry.smallestVoxelEdgeMm();
 }
 
 } // namespace slabcast

@@ -7,3 +7,4 @@
 #include "core/skip/live_skip.h"
 #include "core/transfer/preclassified.h"
 #include "core/transfer/preintegrated.h"
+#include "core/volume/normals.h"

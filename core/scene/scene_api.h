@@ -18,6 +18,7 @@ namespace slabcast {
 struct BuiltSkip;
 struct ClassifiedTexels;
 class LiveSkip;
+struct NormalTexels;
 struct PreintegratedTable;
 struct SkipSource;
 
@@ -99,6 +100,7 @@ public:
     const TransferTable& table() const;
     const ClassifiedTexels* classified() const;      // nothing of other classifications
     const PreintegratedTable* preintegrated() const; // nothing of other classifications
+    const NormalTexels* normals() const;             // nothing unless they were asked for
     const BuiltSkip& skip() const;                   // that serves
     const LiveSkip* live() const;                    // nothing where it is not edited (LiveScene)
     /// Those whose textures are to be kept: skip(), and while editing what it takes turns with.
@@ -107,6 +109,7 @@ public:
     /// others are stale.
     int texelsGeneration() const;
     int lookGeneration() const;
+    int normalsGeneration() const;
     /// Gradient magnitude below which shading fades where the look does not say: 0.5 % of the
     /// data's range per voxel.
     double defaultGradientFloorPerMm() const;

@@ -18,6 +18,8 @@ constexpr TexelLayout kTexelLayouts[] = {
     {GL_R32F, GL_RED, GL_FLOAT, GL_NEAREST, 4},
 };
 constexpr TexelLayout kClassifiedLayout = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_LINEAR, 4};
+// Signed: a gradient of zero is zero in every filter.
+constexpr TexelLayout kNormalsLayout = {GL_RGBA8_SNORM, GL_RGBA, GL_BYTE, GL_LINEAR, 4};
 
 Result<gl::Texture> uploadVoxels(const char* label, const TexelLayout& layout, glm::ivec3 dims,
                                  const void* data, const gl::Caps& caps) {
@@ -35,6 +37,14 @@ const TexelLayout& texelLayoutOf(TexelFormat format) {
 
 const TexelLayout& classifiedLayout() {
     return kClassifiedLayout;
+}
+
+const TexelLayout& normalsLayout() {
+    return kNormalsLayout;
+}
+
+Result<gl::Texture> uploadNormals(const NormalTexels& normals, const gl::Caps& caps) {
+    return uploadVoxels("baked normals", kNormalsLayout, normals.dims, normals.texels.data(), caps);
 }
 
 Result<gl::Texture> uploadTexels(const Texels& texels, const gl::Caps& caps) {

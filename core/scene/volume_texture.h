@@ -6,13 +6,15 @@
 
 #include "core/gl/caps.h"
 #include "core/gl/texture_upload.h"
+#include "core/volume/normals.h"
 #include "core/volume/texels.h"
 
 namespace slabcast {
 
-/// How a volume's scalars and its pre-classified colours lie in their textures.
+/// How a volume's scalars, its pre-classified colours and its normals lie in their textures.
 const TexelLayout& texelLayoutOf(TexelFormat format);
 const TexelLayout& classifiedLayout();
+const TexelLayout& normalsLayout();
 
 /// Like every upload of core/gl/texture_upload.h. Fail: also VolumeTooLarge.
 
@@ -23,6 +25,9 @@ Result<gl::Texture> uploadTexels(const Texels& texels, const gl::Caps& caps);
 /// Pre-classified texels, RGBA8, filtered. `texels` holds dims.x * dims.y * dims.z, x fastest.
 Result<gl::Texture> uploadClassified(const glm::u8vec4* texels, glm::ivec3 dims,
                                      const gl::Caps& caps);
+
+/// Baked normals, RGBA8 signed, filtered.
+Result<gl::Texture> uploadNormals(const NormalTexels& normals, const gl::Caps& caps);
 
 /// A transfer table as it is uploaded; the texels are borrowed.
 struct TableTexels {

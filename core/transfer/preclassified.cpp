@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
-#include "core/volume/texel_codec.h"
+#include "core/volume/gradient_field.h"
 
 namespace slabcast {
 namespace {
@@ -39,37 +39,6 @@ private:
     float referenceLength_; // in units of 1 / the table's extinction
     double scale_;          // table position = scale * sampled + bias
     double bias_;
-};
-
-/// Gradient of the data per mm in patient space, at voxel centres. Half a voxel to either side the
-/// trilinear field is the mean of two voxels, so a difference over one voxel spans two neighbours.
-template <class Codec>
-class GradientField {
-public:
-    GradientField(const Texels& texels, const VolumeGeometry& geometry, Codec codec)
-        : data_(texelData(texels, codec)), dims_(texels.dims),
-          perMm_(glm::transpose(glm::dmat3(geometry.uvwFromModel()))) {
-        for (int axis = 0; axis < 3; ++axis) {
-            perMm_[axis] *= 0.5 * texels.dims[axis] * texels.valueScale / Codec::kUnitsPerSampled;
-        }
-    }
-
-    glm::dvec3 at(glm::i64vec3 voxel, std::int64_t index) const {
-        const glm::i64vec3 strides(1, dims_.x, dims_.x * dims_.y);
-        glm::dvec3 difference;
-        for (int axis = 0; axis < 3; ++axis) {
-            const std::int64_t down = voxel[axis] > 0 ? strides[axis] : 0;
-            const std::int64_t up = voxel[axis] + 1 < dims_[axis] ? strides[axis] : 0;
-            difference[axis] =
-                Codec::unpack(data_[index + up]) - Codec::unpack(data_[index - down]);
-        }
-        return perMm_ * difference;
-    }
-
-private:
-    const typename Codec::Texel* data_;
-    glm::i64vec3 dims_;
-    glm::dmat3 perMm_; // gradient = perMm * (difference of the neighbours in codec units)
 };
 
 /// What a baked light multiplies a colour by; 1 where the gradient points nowhere.

@@ -12,7 +12,7 @@
 #include "core/reference/material.h"
 #include "core/reference/picture_difference.h"
 #include "core/reference/transfer_ramps.h"
-#include "core/reference/trilinear_field.h"
+#include "core/volume/trilinear_field.h"
 #include "perf/number.h"
 
 namespace slabcast {

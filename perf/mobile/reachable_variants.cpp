@@ -30,6 +30,10 @@ std::vector<Change> settingsChanges() {
         [](Settings& s) { s.target = TargetFormat::Rgba16f; },
         [](Settings& s) { s.space = CompositingSpace::Linear; },
         [](Settings& s) { s.shaded = true; },
+        [](Settings& s) {
+            s.shaded = true;
+            s.normals = Normals::Baked;
+        },
         [](Settings& s) { s.order = BlendOrder::FrontToBack; },
         [](Settings& s) { s.termination.reset(); },
     };

@@ -13,6 +13,7 @@ struct Appearance {
     CompositingSpace space = CompositingSpace::Display;
     Classification classification = Classification::Post;
     std::optional<ShadingParameters> shading; // none: unlit
+    Normals normals = Normals::Computed;
 
     Look look() const {
         Look look;
@@ -21,7 +22,11 @@ struct Appearance {
         return look;
     }
     Needs needs(const SkipOptions& skip) const {
-        return {classification, space, shading.has_value(), skip};
+        return {.classification = classification,
+                .space = space,
+                .shaded = shading.has_value(),
+                .normals = normals == Normals::Baked,
+                .skip = skip};
     }
 };
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/reference/trilinear_field.h"
+#include "core/volume/trilinear_field.h"
 
 namespace slabcast::stability {
 

@@ -230,7 +230,7 @@ int textOutOfPlace(const ShaderVariant& variant) {
         const char* text;
         bool needed;
     } entries[] = {{"skipTexels", variant.skip != SkipForm::None},
-                   {"gradientRow[0].xyz", variant.shaded},
+                   {"gradientRow[0].xyz", variant.shaded && variant.normals == Normals::Computed},
                    {"texelFetch(volumeTexels", variant.exactField},
                    {"alpha > viewport.w", variant.terminates},
                    {"work1", variant.counts}};

@@ -212,11 +212,10 @@ ReferencePicture::Layer ReferencePicture::postClassified(glm::dvec3 uvw, const R
             alphaError};
 }
 
-/// Blinn-Phong with a head light, from the gradient of the field one voxel apart.
-void ReferencePicture::shade(glm::dvec3& color, double& error, glm::dvec3 uvw,
-                             const Ray& ray) const {
+/// Of the field, one voxel apart.
+ReferencePicture::Gradient ReferencePicture::computedGradient(glm::dvec3 uvw,
+                                                              const Ray& ray) const {
     const VolumeGeometry& geometry = scene_.geometry();
-    const ShadingParameters& light = scene_.look().shading;
     glm::dvec3 perUvw(0.0);
     double differenceError = 0.0;
     for (int k = 0; k < 3; ++k) {
@@ -229,16 +228,45 @@ void ReferencePicture::shade(glm::dvec3& color, double& error, glm::dvec3 uvw,
     }
     const glm::dmat3 modelFromUvw(geometry.modelFromUvw());
     const glm::dvec3 gradient = glm::transpose(glm::inverse(modelFromUvw)) * perUvw;
-    const double length = glm::length(gradient);
-    const double lengthError = std::sqrt(3.0) * differenceError / geometry.smallestVoxelEdgeMm();
-    const double weight = shadingWeight(light, length);
-    if (shadingWeight(light, length + lengthError) == 0.0) {
+    const double error = std::sqrt(3.0) * differenceError / geometry.smallestVoxelEdgeMm();
+    return {gradient, error, glm::length(gradient), error};
+}
+
+/// As the device may filter signed bytes: with weights and results of eight bits.
+ReferencePicture::Gradient ReferencePicture::bakedGradient(glm::dvec3 uvw, const Ray& ray) const {
+    const NormalTexels& normals = *scene_.normals();
+    const glm::i64vec3 dims(normals.dims);
+    glm::dvec4 range(0.0);
+    const glm::dvec4 texel = trilinear(normals.dims, uvw, range, [&](glm::i64vec3 v) {
+        const auto index = static_cast<std::size_t>((v.z * dims.y + v.y) * dims.x + v.x);
+        return glm::dvec4(normals.texels[index]) / 127.0;
+    });
+    const glm::dvec4 error =
+        3.0 / 256.0 * range + 1.0 / 127.0 + 2.0 * glm::dot(ray.uvwError, glm::dvec3(normals.dims));
+    const double steepness = normals.steepnessPerMm(texel);
+    return {glm::dvec3(texel), glm::length(glm::dvec3(error)), steepness,
+            normals.steepnessPerMm(texel + error) - steepness};
+}
+
+/// Blinn-Phong with a head light.
+void ReferencePicture::shade(glm::dvec3& color, double& error, glm::dvec3 uvw,
+                             const Ray& ray) const {
+    const ShadingParameters& light = scene_.look().shading;
+    const Gradient gradient = plan_.variant.normals == Normals::Baked ? bakedGradient(uvw, ray)
+                                                                      : computedGradient(uvw, ray);
+    const double steepness = gradient.steepness;
+    const double steepnessError = gradient.steepnessError;
+    const double weight = shadingWeight(light, steepness);
+    if (shadingWeight(light, steepness + steepnessError) == 0.0) {
         return;
     }
-    const glm::dvec3 toEye = -glm::normalize(modelFromUvw * ray.ray.step);
-    const double facing = length > 0.0 ? std::abs(glm::dot(gradient, toEye)) / length : 0.0;
+    const glm::dvec3 toEye =
+        -glm::normalize(glm::dmat3(scene_.geometry().modelFromUvw()) * ray.ray.step);
+    const double length = glm::length(gradient.direction);
+    const double facing =
+        length > 0.0 ? std::abs(glm::dot(gradient.direction, toEye)) / length : 0.0;
     const double facingError =
-        std::min(1.0, 2.0 * lengthError / std::max(length, 1e-300)) + 0x1p-20;
+        std::min(1.0, 2.0 * gradient.directionError / std::max(length, 1e-300)) + 0x1p-20;
     const auto lit = [&](double f) {
         return glm::min(color * (light.ambient + light.diffuse * f) +
                             light.specular * std::pow(f, light.shininess),
@@ -250,8 +278,8 @@ void ReferencePicture::shade(glm::dvec3& color, double& error, glm::dvec3 uvw,
     const glm::dvec3 high = lit(std::min(1.0, facing + facingError));
     const glm::dvec3 litError = glm::max(high - meant, meant - low);
     const double weightError =
-        std::max(shadingWeight(light, length + lengthError) - weight,
-                 weight - shadingWeight(light, std::max(0.0, length - lengthError)));
+        std::max(shadingWeight(light, steepness + steepnessError) - weight,
+                 weight - shadingWeight(light, std::max(0.0, steepness - steepnessError)));
     const double brightest = light.ambient + light.diffuse;
     error = error * std::max(1.0, brightest) + std::max({litError.x, litError.y, litError.z}) +
             weightError;

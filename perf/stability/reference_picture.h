@@ -34,12 +34,19 @@ private:
     struct Field {
         double value, error;
     };
+    /// Direction of any length, and steepness per mm.
+    struct Gradient {
+        glm::dvec3 direction;
+        double directionError, steepness, steepnessError;
+    };
     Ray rayOf(glm::dvec2 fragCoord) const;
     Field fieldAt(glm::dvec3 uvw, glm::dvec3 uvwError) const;
     Layer classified(int index, const Ray& ray, glm::dvec3 lengths) const;
     Layer postClassified(glm::dvec3 uvw, const Ray& ray, glm::dvec3 lengths) const;
     Layer preClassified(glm::dvec3 uvw, const Ray& ray, glm::dvec3 lengths) const;
     Layer preIntegrated(int index, const Ray& ray, glm::dvec3 lengths) const;
+    Gradient computedGradient(glm::dvec3 uvw, const Ray& ray) const;
+    Gradient bakedGradient(glm::dvec3 uvw, const Ray& ray) const;
     void shade(glm::dvec3& color, double& error, glm::dvec3 uvw, const Ray& ray) const;
 
     const Scene& scene_;

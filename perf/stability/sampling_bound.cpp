@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/reference/trilinear_field.h"
+#include "core/volume/trilinear_field.h"
 
 namespace slabcast::stability {
 

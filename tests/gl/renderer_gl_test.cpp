@@ -114,6 +114,7 @@ struct LookCase {
     bool shaded;
     double specular; // highlights turn a filter's error in the gradient into any colour
     double meanLimit;
+    Normals normals = Normals::Computed;
 };
 
 // Means: exact fields and 16-bit filters differ by float32 alone; filters of 8-bit weights and
@@ -125,6 +126,10 @@ constexpr LookCase kLooks[] = {
     {"filtered 8 bit", VoxelType::U8, false, Classification::Post, false, 0.0, 0.001},
     {"filtered 16 bit", VoxelType::U16, false, Classification::Post, false, 0.0, 0.0001},
     {"filtered shaded", VoxelType::U16, false, Classification::Post, true, 0.0, 0.0001},
+    {"baked normals", VoxelType::U16, false, Classification::Post, true, 0.0, 0.0001,
+     Normals::Baked},
+    {"baked normals, exact", VoxelType::U8, true, Classification::Post, true, 0.25, 0.0001,
+     Normals::Baked},
     {"pre-classified", VoxelType::U8, false, Classification::Pre, false, 0.0, 0.002},
     {"pre-classified lit", VoxelType::U16, false, Classification::Pre, true, 0.0, 0.002},
 };
@@ -139,7 +144,7 @@ TEST_F(RendererTest, EveryPixelMatchesTheFloat64Reference) {
                                   16 + random.below(12)};
             const Volume volume = wavyVolume(random, dims, c.type, spacing);
             Appearance look{.tf = smoothTransfer(random, c.type == VoxelType::U8 ? 255.0 : 65535.0, 0.4),
-                      .classification = c.classification};
+                      .classification = c.classification, .normals = c.normals};
             if (c.shaded) {
                 look.shading = ShadingParameters{.specular = c.specular};
             }
@@ -149,6 +154,7 @@ TEST_F(RendererTest, EveryPixelMatchesTheFloat64Reference) {
             settings.jitter = random.chance(0.5);
             settings.classification = c.classification;
             settings.shaded = c.shaded;
+            settings.normals = c.normals;
             const FramePlan plan = decide(scene, settings);
             const View view = asymmetricView(scene);
             expectMatchesReference(draw(scene, plan, view, kSize), scene, plan, view, c.meanLimit);

@@ -230,6 +230,14 @@ TEST_F(RendererUpkeepTest, RefusesAPlanForAnotherLook) {
     ASSERT_FALSE(lit.has_value());
     EXPECT_EQ(lit.error().code, ErrorCode::InvalidArgument);
     settings.shaded = false;
+    const Scene computed =
+        makeScene(constantVolume({4, 4, 4}, 5),
+                  {.tf = uniformTransfer(1.0, glm::dvec3(1.0)), .shading = ShadingParameters{}});
+    Settings baked = settings;
+    baked.shaded = true;
+    EXPECT_TRUE(renderer().prepare(computed, decide(computed, baked), {}).has_value());
+    baked.normals = Normals::Baked;
+    EXPECT_FALSE(renderer().prepare(computed, decide(computed, baked), {}).has_value());
     settings.space = CompositingSpace::Linear;
     EXPECT_FALSE(renderer().prepare(scene, decide(scene, settings), {}).has_value());
     settings.space = CompositingSpace::Display;

@@ -167,10 +167,17 @@ TEST(VolumeMemory, ForecastCountsEveryCopy) {
     EXPECT_EQ(forecast->gpuTexelBytes, 12000);
     EXPECT_EQ(forecast->hostBytes(), 12000 + 12000); // texels take the place of voxels
     // Colours of four bytes on both sides, beside the scalars that they are made from.
-    const auto classified = forecastMemory({10, 20, 30}, VoxelType::I16, TexelFormat::R16F, true);
+    const auto classified = forecastMemory({10, 20, 30}, VoxelType::I16, TexelFormat::R16F,
+                                           {.classification = Classification::Pre});
     ASSERT_TRUE(classified.has_value());
     EXPECT_EQ(classified->gpuTexelBytes, 24000);
     EXPECT_EQ(classified->hostBytes(), 12000 + 24000 + 6000); // codes of alpha have 8 bits
+    // Normals beside the scalars.
+    const auto lit = forecastMemory({10, 20, 30}, VoxelType::I16, TexelFormat::R16F,
+                                    {.shaded = true, .normals = true});
+    ASSERT_TRUE(lit.has_value());
+    EXPECT_EQ(lit->gpuTexelBytes, 12000 + 24000);
+    EXPECT_EQ(lit->hostBytes(), 12000 + 12000 + 24000);
     EXPECT_EQ(forecastTextureBytes({3, 5, 7}, TexelFormat::R8), 105);
     EXPECT_EQ(forecastTextureBytes({3, 5, 7}, TexelFormat::R32fExact), 420);
 }
@@ -189,10 +196,12 @@ TEST(VolumeMemory, ForecastRefusesWhatCannotBeCounted) {
 }
 
 TEST(VolumeMemory, WhatIsUploadedIsWhatMustFit) {
-    EXPECT_EQ(uploadedBytesPerTexel(TexelFormat::R8, false), 1);
-    EXPECT_EQ(uploadedBytesPerTexel(TexelFormat::R16F, false), 2);
-    EXPECT_EQ(uploadedBytesPerTexel(TexelFormat::R8, true), 4);
-    EXPECT_EQ(uploadedBytesPerTexel(TexelFormat::R16F, true), 4);
+    const Needs pre{.classification = Classification::Pre};
+    EXPECT_EQ(uploadedBytesPerVoxel(TexelFormat::R8, {}), 1);
+    EXPECT_EQ(uploadedBytesPerVoxel(TexelFormat::R16F, {}), 2);
+    EXPECT_EQ(uploadedBytesPerVoxel(TexelFormat::R8, pre), 4);
+    EXPECT_EQ(uploadedBytesPerVoxel(TexelFormat::R16F, pre), 4);
+    EXPECT_EQ(uploadedBytesPerVoxel(TexelFormat::R8, {.normals = true}), 5);
 }
 
 TEST(VolumeMemory, LimitNamesSmallestDownsampling) {

@@ -70,6 +70,7 @@ Settings randomSettings(Dice& dice) {
     s.target = dice.chance(0.5) ? TargetFormat::Rgba8 : TargetFormat::Rgba16f;
     s.space = dice.chance(0.5) ? CompositingSpace::Display : CompositingSpace::Linear;
     s.shaded = s.classification != Classification::Preintegrated && dice.chance(0.5);
+    s.normals = dice.chance(0.5) ? Normals::Computed : Normals::Baked;
     if (dice.chance(0.3)) {
         s.termination.reset();
     }
@@ -455,6 +456,24 @@ TEST(FramePlan, BakedTexelsNeedNeitherGradientsNorFetches) {
     EXPECT_FALSE(pre.variant.shaded);
     EXPECT_FALSE(pre.variant.exactField);
     EXPECT_FALSE(planned({}, facts).variant.shaded);
+}
+
+TEST(FramePlan, BakedNormalsGoWithWhatIsLitSampleBySampleAndTellTheirError) {
+    SceneFacts facts = boneFacts();
+    facts.normals = {.meanDegrees = 4.25, .mostOf95Degrees = 11.5, .places = 7};
+    Settings settings{.shaded = true, .normals = Normals::Baked};
+    const FramePlan lit = planned(settings, facts);
+    EXPECT_EQ(lit.variant.normals, Normals::Baked);
+    EXPECT_TRUE(lit.needs.normals);
+    const std::string why = reasonFor(lit, "classification").value().why;
+    EXPECT_NE(why.find("4.25 degrees on average, 95 % of them by less than 11.5"),
+              std::string::npos)
+        << why;
+    settings.shaded = false;
+    EXPECT_EQ(planned(settings, facts).variant.normals, Normals::Computed);
+    settings.shaded = true;
+    settings.classification = Classification::Pre;
+    EXPECT_EQ(planned(settings, facts).variant.normals, Normals::Computed);
 }
 
 TEST(FramePlan, PreIntegrationTellsWhatItsColoursAreOffBy) {

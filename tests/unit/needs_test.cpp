@@ -20,6 +20,15 @@ TEST(Needs, AreWhatTheSettingsDrawFrom) {
     EXPECT_EQ(needs.builder, SkipBuilder::Cpu);
 }
 
+TEST(Needs, NormalsAreBakedOfWhatIsLitSampleBySample) {
+    EXPECT_TRUE(needsOf({.shaded = true, .normals = Normals::Baked}).normals);
+    EXPECT_FALSE(needsOf({.shaded = true}).normals);
+    EXPECT_FALSE(needsOf({.normals = Normals::Baked}).normals);
+    const Classification pre = Classification::Pre;
+    EXPECT_FALSE(
+        needsOf({.classification = pre, .shaded = true, .normals = Normals::Baked}).normals);
+}
+
 TEST(Needs, TightPlanesNeedAStructure) {
     const SkipStructure none = SkipStructure::None;
     EXPECT_EQ(needsOf({.skip = none, .tighten = true}).skip.structure, SkipStructure::Blocks);

@@ -115,6 +115,33 @@ TEST(Scene, KeepsWhatIsThere) {
     EXPECT_NE(scene.skip().generation, structure);
 }
 
+TEST(Scene, NormalsAreOfTheTexelsAndOutliveALook) {
+    Scene scene = ballScene();
+    Needs needs{.shaded = true, .normals = true, .skip = kNoSkip};
+    EXPECT_EQ(scene.normals(), nullptr);
+    ASSERT_TRUE(scene.provide(needs).has_value());
+    const NormalTexels* const baked = scene.normals();
+    ASSERT_NE(baked, nullptr);
+    EXPECT_GT(scene.facts().normals.places, 0);
+    ASSERT_TRUE(scene.setLook({.tf = thin()}).has_value());
+    EXPECT_FALSE(scene.provides(needs));
+    ASSERT_TRUE(scene.provide(needs).has_value());
+    EXPECT_EQ(scene.normals(), baked) << "baked again";
+    // A floor above what they hold: another scale, so that light still fades where it should.
+    ASSERT_TRUE(
+        scene.setLook({.tf = thin(), .shading = {.gradientFloorPerMm = 2.0 * baked->steepestPerMm}})
+            .has_value());
+    const int generation = scene.normalsGeneration();
+    ASSERT_TRUE(scene.provide(needs).has_value());
+    EXPECT_NE(scene.normalsGeneration(), generation);
+    needs.normals = false;
+    ASSERT_TRUE(scene.provide(needs).has_value());
+    EXPECT_EQ(scene.normals(), nullptr);
+    scene.releaseTexels();
+    needs.normals = true;
+    EXPECT_EQ(codeOf(scene.provide(needs)), ErrorCode::InvalidArgument);
+}
+
 TEST(Scene, LightThatIsBakedInIsClassifiedAnew) {
     Scene scene = ballScene();
     Needs needs{.classification = Classification::Pre, .skip = kNoSkip};

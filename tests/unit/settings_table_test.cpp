@@ -54,9 +54,9 @@ TEST(SettingsTable, everyValueOfEverySettingComesBackAndTouchesNoOther) {
 TEST(SettingsTable, everyMemberOfTheSettingsIsInIt) {
     // A new member does not compile until it is named here.
     const auto& [classification, skip, skipOptions, skipBuilder, lattice, jitter, spacing, layers,
-                 planes, layersPerPlane, form, tighten, target, space, shaded, order, termination] =
-        Settings{};
-    constexpr std::size_t kMembers = 17;
+                 planes, layersPerPlane, form, tighten, target, space, shaded, normals, order,
+                 termination] = Settings{};
+    constexpr std::size_t kMembers = 18;
     [[maybe_unused]] const auto& [structure, edge, bits, partitions, minimum, range, level,
                                   traversal, budget] = skipOptions;
     constexpr std::size_t kSkipMembers = 9;
@@ -88,6 +88,7 @@ TEST(SettingsTable, eachIsReadFromTheMemberThatItNames) {
     s.target = TargetFormat::Rgba16f;
     s.space = CompositingSpace::Linear;
     s.shaded = true;
+    s.normals = Normals::Baked;
     s.order = BlendOrder::FrontToBack;
     s.termination.reset();
     const std::pair<const char*, std::string> expected[] = {
@@ -95,6 +96,7 @@ TEST(SettingsTable, eachIsReadFromTheMemberThatItNames) {
         {"target", name(s.target)},
         {"space", name(s.space)},
         {"shade", "phong"},
+        {"normals", "baked"},
         {"layer-spacing", "0.25"},
         {"layers", "100"},
         {"planes", "5"},

@@ -57,12 +57,13 @@ std::vector<ShaderVariant> product() {
 
 TEST(ShaderVariant, ValidOnesAreAsManyAsTheRequirementsLeave) {
     // 11 forms (10 lengths and the loop), 6 of skipping, 3 of termination (none, within segments,
-    // across planes), counting, two intervals, and jitter. Post is shaded or not, and its field and
-    // table are exact, its table is, or neither; pre-integrated has an exact field or not. Shells
-    // may have their lengths baked, but for pre-integrated layers.
+    // across planes), counting, two intervals, and jitter. Post is unlit, or lit by one of two
+    // kinds of normals, and its field and table are exact, its table is, or neither; pre-integrated
+    // has an exact field or not. Shells may have their lengths baked, but for pre-integrated
+    // layers.
     const std::size_t alike = 11 * (6 * 3 * 2) * 2;
-    const std::size_t named = alike * (2 * 3 * 2 + 1 * 2 + 2);
-    const std::size_t valid = alike * 2 * (2 * 3 * 3 + 1 * 3 + 2 * 2);
+    const std::size_t named = alike * (3 * 3 * 2 + 1 * 2 + 2);
+    const std::size_t valid = alike * 2 * (3 * 3 * 3 + 1 * 3 + 2 * 2);
     std::set<ShaderVariant> variants;
     std::set<std::string> names;
     for (const ShaderVariant& v : product()) {
@@ -177,7 +178,9 @@ TEST(ShaderVariant, WhatIsOffIsAbsentFromTheText) {
         {"ray.layerLength * step0.w", [](const V& v) { return v.lengths == Lengths::PerRay; }},
         {"texelFetch(volumeTexels", [](const V& v) { return v.exactField; }},
         {"textureLod(volumeTexels", [](const V& v) { return !v.exactField; }},
-        {"gradientRow[0].", [](const V& v) { return v.shaded; }},
+        {"gradientRow[0].xyz",
+         [](const V& v) { return v.shaded && v.normals == Normals::Computed; }},
+        {"normalTexels", [](const V& v) { return v.normals == Normals::Baked; }},
         {"material.z * pow(", [](const V& v) { return v.shaded; }},
         {"pow(", [](const V& v) { return v.shaded; }},
         {"halved", never},

@@ -9,9 +9,10 @@ ReasonId reasonOf(const Settings& settings) {
     const bool post = settings.classification == Classification::Post;
     return settings.classification == Classification::Preintegrated
                ? ReasonId::ClassificationOfIntervals
-           : !settings.shaded ? ReasonId::ClassificationUnlit
-           : post             ? ReasonId::ClassificationLit
-                              : ReasonId::ClassificationBaked;
+           : !settings.shaded                           ? ReasonId::ClassificationUnlit
+           : post && settings.normals == Normals::Baked ? ReasonId::ClassificationLitByNormals
+           : post                                       ? ReasonId::ClassificationLit
+                                                        : ReasonId::ClassificationBaked;
 }
 
 /// Where a layer's opacity is made. Texels are taken as they are where they were made for layers of
@@ -48,9 +49,11 @@ Result<void> decideClassification(const PlanInput& in, FramePlan& plan) {
     plan.variant.classification = way;
     plan.variant.exactField = facts.exactField && way != Classification::Pre;
     plan.variant.shaded = settings.shaded && way == Classification::Post;
+    plan.variant.normals = plan.variant.shaded ? settings.normals : Normals::Computed;
     const double colourError =
         facts.visibleColorRange * preintegratedColorError(mostDepthOf(in, plan, 1));
-    because(plan, reasonOf(settings), {double(way), colourError});
+    because(plan, reasonOf(settings),
+            {double(way), colourError, facts.normals.meanDegrees, facts.normals.mostOf95Degrees});
     if (facts.wideTable && way == Classification::Preintegrated) {
         because(plan, ReasonId::WideTableWarning);
     }

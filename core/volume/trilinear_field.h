@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include <glm/glm.hpp>
 
@@ -8,7 +9,7 @@
 
 namespace slabcast {
 
-/// The scalar field that both references are taken of: trilinear in the stored texels' data values,
+/// The scalar field that pictures are of: trilinear in the stored texels' data values,
 /// clamped to the edge. Borrows the texels: they must outlive it.
 /// Tested by: discrete_test.cpp, continuous_test.cpp
 template <class Codec>
@@ -57,5 +58,48 @@ private:
     double scale_; // data value = scale * units + bias
     double bias_;
 };
+
+/// Derivative by uvw: central differences of the field over one voxel, half of it to each side.
+template <class Field>
+glm::dvec3 uvwGradient(const Field& field, glm::dvec3 uvw) {
+    glm::dvec3 gradient;
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 half(0.0);
+        half[axis] = 0.5 / field.dims()[axis];
+        gradient[axis] = (field.at(uvw + half) - field.at(uvw - half)) * field.dims()[axis];
+    }
+    return gradient;
+}
+
+/// Four components at a place, filtered as the field is. `around(cell)` gives those of the eight
+/// voxels around it, in the order of TrilinearField::cornersOf().
+template <class Around>
+glm::dvec4 filteredTexels(glm::dvec3 dims, glm::dvec3 uvw, Around around) {
+    const glm::dvec3 place = glm::clamp(uvw * dims - 0.5, glm::dvec3(0.0), dims - 1.0);
+    const glm::ivec3 cell(place);
+    const glm::dvec3 upper = place - glm::dvec3(cell);
+    const std::array<glm::dvec4, 8> corners = around(cell);
+    glm::dvec4 sum(0.0);
+    for (int k = 0; k < 8; ++k) {
+        const glm::dvec3 share =
+            glm::mix(1.0 - upper, upper, glm::dvec3(k & 1, k >> 1 & 1, k >> 2));
+        sum += share.x * share.y * share.z * corners[k];
+    }
+    return sum;
+}
+
+/// Texels of the eight voxels from `cell` on, those beyond the far edge as the edge's.
+template <class Texel>
+std::array<glm::dvec4, 8> texelsAround(const std::vector<Texel>& texels, glm::i64vec3 dims,
+                                       glm::ivec3 cell) {
+    std::array<glm::dvec4, 8> corners;
+    for (int k = 0; k < 8; ++k) {
+        const glm::i64vec3 v = glm::min(glm::i64vec3(cell + glm::ivec3(k & 1, k >> 1 & 1, k >> 2)),
+                                        dims - std::int64_t{1});
+        corners[k] =
+            glm::dvec4(texels[static_cast<std::size_t>((v.z * dims.y + v.y) * dims.x + v.x)]);
+    }
+    return corners;
+}
 
 } // namespace slabcast
