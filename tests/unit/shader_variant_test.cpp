@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <functional>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -272,6 +273,34 @@ TEST(ShaderVariant, OnlyMeasuringRoundsToHalfs) {
         EXPECT_EQ(count(rounded, "#define HALF_GROUPS 31"), 1U);
         EXPECT_GT(count(rounded, "halved("), 0U);
     }
+}
+
+// What is mediump is what the half-precision study rounds: a mediump variable holds the rounded
+// result of one of its groups, and nothing else is mediump.
+TEST(ShaderVariant, WhatIsMediumpIsAGroupOfTheHalfPrecisionStudy) {
+    const std::map<std::string, int> groups = {{"Opacity", kHalfOpacity},
+                                               {"Sum", kHalfSum},
+                                               {"Colour", kHalfColor},
+                                               {"Light", kHalfLight},
+                                               {"Extinction", kHalfExtinction}};
+    const std::regex declaration(R"( *mediump (float|vec[234]) \w+ = in(\w+)\(.*)");
+    int declared = 0;
+    for (const ShaderVariant& v : test::walkedVariants()) {
+        int found = 0;
+        for (const std::string& line : linesOf(withoutComments(shaderText(v).value().fragment))) {
+            EXPECT_EQ(line.find("lowp"), std::string::npos) << name(v) << ": " << line;
+            if (line.find("mediump") != std::string::npos) {
+                std::smatch parts;
+                ASSERT_TRUE(std::regex_match(line, parts, declaration)) << name(v) << ": " << line;
+                ASSERT_TRUE(groups.contains(parts[2])) << name(v) << ": " << line;
+                EXPECT_EQ(count(line, "mediump"), 1U) << name(v) << ": " << line;
+                declared |= groups.at(parts[2]);
+                ++found;
+            }
+        }
+        EXPECT_EQ(found > 0, v.shaded) << name(v);
+    }
+    EXPECT_EQ(declared, kHalfDeclared);
 }
 
 TEST(ShaderVariant, UnrolledTextsWriteOutTheirLengthOfLayers) {
