@@ -309,6 +309,7 @@ TEST(ShaderVariant, UnrolledTextsWriteOutTheirLengthOfLayers) {
         const int group = groupOf({.unroll = length});
         EXPECT_EQ(length % group, 0);
         EXPECT_LE(group, kLoopGroup);
+        EXPECT_EQ(group == 1, length == 1); // a group of one is a slice's only layer
         for (int layer = 0; layer < length; ++layer) {
             EXPECT_EQ(count(text, "X(" + std::to_string(layer) + ".0) "),
                       layer % group == 0 ? 1U : 0U);
