@@ -76,11 +76,17 @@ struct ShaderVariant {
 std::string name(const ShaderVariant& variant);
 
 /// Groups of operations that a device may do in 16 bits: a layer's opacity from its depth; the sum
-/// of layers; colours between the table's, and premultiplied; light; extinction between the
-/// table's.
+/// of layers; colours between the table's, and premultiplied; what mixes colour and light;
+/// extinction between the table's.
 inline constexpr int kHalfOpacity = 1, kHalfSum = 2, kHalfColor = 4, kHalfLight = 8;
 inline constexpr int kHalfExtinction = 16;
 inline constexpr int kHalfAll = 31;
+/// Those that the shaders declare mediump. Tested by: shader_variant_test.cpp
+inline constexpr int kHalfDeclared = kHalfLight;
+/// Beside groups: rounded toward zero, as a device may, instead of to nearest.
+inline constexpr int kHalfCutOff = 32;
+/// No group: what is mediump is highp, as in all texts that round.
+inline constexpr int kHalfNowhere = 64;
 
 /// What measuring changes in a variant's text, and nothing that is drawn for a user.
 struct MeasuringText {

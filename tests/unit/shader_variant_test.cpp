@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <functional>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -277,12 +278,41 @@ TEST(ShaderVariant, OnlyMeasuringRoundsToHalfs) {
     }
 }
 
+// What is mediump is what the half-precision study rounds: a mediump variable holds the rounded
+// result of one of its groups, and nothing else is mediump.
+TEST(ShaderVariant, WhatIsMediumpIsAGroupOfTheHalfPrecisionStudy) {
+    const std::map<std::string, int> groups = {{"Opacity", kHalfOpacity},
+                                               {"Sum", kHalfSum},
+                                               {"Colour", kHalfColor},
+                                               {"Light", kHalfLight},
+                                               {"Extinction", kHalfExtinction}};
+    const std::regex declaration(R"( *mediump (float|vec[234]) \w+ = in(\w+)\(.*)");
+    int declared = 0;
+    for (const ShaderVariant& v : test::walkedVariants()) {
+        int found = 0;
+        for (const std::string& line : linesOf(withoutComments(shaderText(v).value().fragment))) {
+            EXPECT_EQ(line.find("lowp"), std::string::npos) << name(v) << ": " << line;
+            if (line.find("mediump") != std::string::npos) {
+                std::smatch parts;
+                ASSERT_TRUE(std::regex_match(line, parts, declaration)) << name(v) << ": " << line;
+                ASSERT_TRUE(groups.contains(parts[2])) << name(v) << ": " << line;
+                EXPECT_EQ(count(line, "mediump"), 1U) << name(v) << ": " << line;
+                declared |= groups.at(parts[2]);
+                ++found;
+            }
+        }
+        EXPECT_EQ(found > 0, v.shaded) << name(v);
+    }
+    EXPECT_EQ(declared, kHalfDeclared);
+}
+
 TEST(ShaderVariant, UnrolledTextsWriteOutTheirLengthOfLayers) {
     for (const int length : kUnrollLengths) {
         const std::string text = withoutComments(shaderText({.unroll = length}).value().fragment);
         const int group = groupOf({.unroll = length});
         EXPECT_EQ(length % group, 0);
         EXPECT_LE(group, kLoopGroup);
+        EXPECT_EQ(group == 1, length == 1); // a group of one is a slice's only layer
         for (int layer = 0; layer < length; ++layer) {
             EXPECT_EQ(count(text, "X(" + std::to_string(layer) + ".0) "),
                       layer % group == 0 ? 1U : 0U);

@@ -1,4 +1,5 @@
-// Where a device may hold 16 bits: nowhere; this is what is drawn. half.glsl is the other.
+// What is drawn: nothing is rounded here; where it is declared mediump, a device may. half.glsl is
+// the other.
 #define inOpacity(x) (x)
 #define inSum(x) (x)
 #define inColour(x) (x)

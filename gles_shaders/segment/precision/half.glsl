@@ -1,10 +1,14 @@
-// What mediump may do and no desktop driver shows: every result of the named operations is rounded
-// to fp16, to nearest. For measuring where mediump is safe. HALF_GROUPS: bits of core/plan/
-// shader_variant.h.
+// What mediump may do: every result of the named operations is rounded to fp16, to nearest or toward
+// zero. For measuring where mediump is safe. HALF_GROUPS: bits of core/plan/shader_variant.h. Nothing
+// else is rounded: some desktop drivers do hold mediump in 16 bits (Mesa's llvmpipe, where the
+// processor converts them).
+#define mediump highp
 float halved(float x) {
     uint bits = floatBitsToUint(x);
-    uint kept = (bits + 0xfffu + ((bits >> 13) & 1u)) & ~0x1fffu;
-    precise float small = (x + 0.75) - 0.75; // steps of 2^-24, as fp16 has below 2^-14
+    bool cutOff = (HALF_GROUPS & 32) != 0;
+    uint kept = (cutOff ? bits : bits + 0xfffu + ((bits >> 13) & 1u)) & ~0x1fffu;
+    // Steps of 2^-24, as fp16 has below 2^-14.
+    precise float small = cutOff ? trunc(x * 16777216.0) / 16777216.0 : (x + 0.75) - 0.75;
     float nearest = abs(x) < 6.103515625e-5 ? small : uintBitsToFloat(kept);
     return abs(nearest) > 65504.0 ? sign(x) / 0.0 : nearest;
 }

@@ -1,3 +1,3 @@
-mediump vec3 shade(mediump vec3 colour, float full, vec3 uvw, Ray ray) {
+vec3 shade(vec3 colour, float full, vec3 uvw, Ray ray) {
     return colour;
 }

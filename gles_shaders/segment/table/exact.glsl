@@ -1,7 +1,5 @@
 // The table between two texels from both of them, interpolated here: texture units may filter with
-// 8-bit weights. Colours are mediump: their rounding stays below half an 8-bit step (`slabcast
-// stability`, half precision); a device that does round them promises that skipping changes nothing
-// only to that rounding.
+// 8-bit weights.
 vec4 tableAt(float value) {
     precise float at = clamp((value - tableMap.y) * tableMap.x, 0.0, tableMap.w);
     int texel = int(at);
@@ -10,7 +8,7 @@ vec4 tableAt(float value) {
     float part = at - float(texel);
     precise float denser = inExtinction(inExtinction(high.a - low.a) * part);
     precise float extinction = inExtinction(low.a + denser);
-    mediump vec3 rise = inColour(high.rgb - low.rgb);
-    precise mediump vec3 colour = inColour(low.rgb + inColour(rise * part));
+    vec3 rise = inColour(high.rgb - low.rgb);
+    precise vec3 colour = inColour(low.rgb + inColour(rise * part));
     return vec4(colour, extinction);
 }
