@@ -57,6 +57,17 @@ GLenum asEnum(GLint value) {
     return static_cast<GLenum>(value);
 }
 
+/// 0 of one that the host has deleted: it lives on while it is current, and its name ends with the
+/// first program that takes its place, so that nothing could set it back (GLES 3.2, section 7.3).
+GLint currentProgram() {
+    const GLint program = integer(GL_CURRENT_PROGRAM);
+    GLint deleted = GL_FALSE;
+    if (program != 0) {
+        GetProgramiv(asName(program), GL_DELETE_STATUS, &deleted);
+    }
+    return deleted == GL_TRUE ? 0 : program;
+}
+
 void setSwitch(GLenum name, bool on) {
     (on ? Enable : Disable)(name);
 }
@@ -118,7 +129,7 @@ void StateGuard::usePlainPacking() {
 }
 
 void StateGuard::saveBindings() {
-    program_ = integer(GL_CURRENT_PROGRAM);
+    program_ = currentProgram();
     vertexArray_ = integer(GL_VERTEX_ARRAY_BINDING);
     drawFramebuffer_ = integer(GL_DRAW_FRAMEBUFFER_BINDING);
     readFramebuffer_ = integer(GL_READ_FRAMEBUFFER_BINDING);

@@ -10,7 +10,8 @@ namespace slabcast::gl {
 
 /// Restores the GL state that drawing a volume touches, so that a host's own renderer finds what it
 /// left:
-/// - program, vertex array, draw and read framebuffer;
+/// - program (none where the host has deleted it and left it current), vertex array, draw and read
+///   framebuffer;
 /// - viewport, scissor box; colour mask, clear colour; depth mask, function and range;
 ///   blend functions and equations;
 /// - whether blend, cull face, depth test, dither, polygon offset, rasterizer discard, sample alpha

@@ -56,6 +56,7 @@ public:
         program->use();
         drawer_.draw(*program, shape, {0, 1, 1});
         gl::Finish();
+        gl::UseProgram(0); // else it outlives its deletion
         return {};
     }
 

@@ -9,6 +9,7 @@ std::span<const Family> families() {
         {"extreme-views", "Extreme views", extremeViewCases},
         {"extreme-plans", "Extreme plans", extremePlanCases},
         {"in-time", "Swimming in time", inTimeCases},
+        {"lattices", "Planar layers or shells", latticeCases},
         {"half-precision", "Half precision", halfPrecisionCases},
         {"left-out", "What a scene does not need", leftOutCases},
         {"symmetry", "Axes, mirrors and units", symmetryCases},

@@ -12,6 +12,7 @@ void extremeDataCases(Bench& bench);
 void extremeViewCases(Bench& bench);
 void extremePlanCases(Bench& bench);
 void inTimeCases(Bench& bench);
+void latticeCases(Bench& bench);
 void halfPrecisionCases(Bench& bench);
 void leftOutCases(Bench& bench);
 void symmetryCases(Bench& bench);

@@ -20,8 +20,8 @@ from report_keys import odd_keys, undocumented_columns, undocumented_keys  # noq
 SLABCAST = None  # the program, from the command line
 KEYS = {"family", "name", "quantity", "bound", "reason", "measured", "pass"}
 OPTIONAL_KEYS = {"failure", "pictures", "series", "left_out", "condition"}
-FAMILIES = ["stiff", "extreme-data", "extreme-views", "extreme-plans", "in-time", "half-precision", "left-out",
-            "symmetry", "cut-rays", "conditioning", "optical-depth", "manufactured"]
+FAMILIES = ["stiff", "extreme-data", "extreme-views", "extreme-plans", "in-time", "lattices", "half-precision",
+            "left-out", "symmetry", "cut-rays", "conditioning", "optical-depth", "manufactured"]
 METHODS = [f"{way}, {target}" for target in ("rgba8", "rgba16f") for way in ("slicing", "hybrid", "ray casting")]
 
 
@@ -86,6 +86,18 @@ class ReducedRunTest(unittest.TestCase):
         for c in jumping:
             self.assertGreater(c["jumping_share"], 0.1, c["scene"])
             self.assertGreater(c["condition_number"], 1e5, c["scene"])
+
+    def test_lattices_are_compared_in_swim_error_and_cost(self):
+        measured = {c["name"]: c["measured"] for c in self.cases if c["family"] == "lattices"}
+        for scene in ("smooth", "steps", "surfaces inside"):
+            of = f"lattices, {scene}, 100 degrees, 1 voxels a layer, "
+            for region in ("whole view",) if scene == "surfaces inside" else ("whole view", "centre", "border"):
+                self.assertGreater(measured[f"{of}swim, planar, turned by 1 degrees, {region}"], 1e-3)
+                self.assertLess(measured[f"{of}swim, shells, turned by 1 degrees, {region}"], 1e-10)
+                self.assertGreater(measured[f"{of}error, shells, {region}"], 1e-4)
+            for phone in ("g71", "g57", "adreno650", "adreno740"):
+                for layers in (1, 2, 16):
+                    self.assertGreater(measured[f"{of}cost, shells over planar, {phone}, {layers} a plane"], 0.5)
 
     def test_names_are_unique(self):
         names = [c["name"] for c in self.cases]

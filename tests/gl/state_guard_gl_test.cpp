@@ -233,6 +233,24 @@ TEST_F(StateGuardGl, RestoresAllThatItDocuments) {
     }
 }
 
+TEST_F(StateGuardGl, AProgramThatTheHostDeletedEndsWithoutAnError) {
+    const gl::StateGuard forOtherTests;
+    const auto tint = [] {
+        return *gl::buildProgram("tint", test::kTintVertexText, test::kTintFragmentText);
+    };
+    gl::Program ofHost = tint();
+    const gl::Program ours = tint();
+    ofHost.use();
+    ofHost.release(); // it stays current
+    ASSERT_NE(integer(GL_CURRENT_PROGRAM), 0);
+    {
+        const gl::StateGuard guard;
+        ours.use();
+    }
+    EXPECT_EQ(takeErrorCount(), 0);
+    EXPECT_EQ(integer(GL_CURRENT_PROGRAM), 0);
+}
+
 TEST_F(StateGuardGl, PlainPixelTransferIsPlain) {
     const gl::StateGuard guard;
     const Owner host(1);

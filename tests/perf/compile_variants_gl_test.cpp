@@ -21,6 +21,9 @@ protected:
                 heard.push_back({labelOf(variant), failure == nullptr ? "" : failure->detail});
             });
         EXPECT_TRUE(done.has_value()) << done.error().detail;
+        GLint current = -1;
+        gl::GetIntegerv(GL_CURRENT_PROGRAM, &current);
+        EXPECT_EQ(current, 0); // all of them are deleted
         return heard;
     }
 };

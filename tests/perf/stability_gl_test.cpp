@@ -5,6 +5,7 @@
 #include "perf/stability/bench.h"
 #include "perf/stability/conditions.h"
 #include "perf/stability/expected.h"
+#include "perf/stability/phone_cost.h"
 #include "perf/stability/volumes.h"
 #include "tests/support/render_support.h"
 
@@ -112,6 +113,38 @@ TEST_F(StabilityTest, OnADeviceThatCannotDrawEveryFamilyEndsInFailedCases) {
         EXPECT_GT(failed, 0) << family.name;
     }
     gl::CheckFramebufferStatus = real;
+}
+
+/// A box of 8 layers, seen as a picture that it fills in part: one fragment for all of a ray, or
+/// one for each layer, which a phone's model makes dearer.
+TEST_F(StabilityTest, APhonesModelCountsFragmentsAndLayers) {
+    Bench bench = this->bench();
+    if (!bench.caps().floatBlend) {
+        GTEST_SKIP() << test::kCannotCount;
+    }
+    const Result<Scene> scene = bench.scene(box(), look(), {.structure = SkipStructure::None});
+    ASSERT_TRUE(scene.has_value()) << scene.error().detail;
+    const View view = distantView(*scene, 0.0, 2.0, kSize);
+    for (const LatticeKind kind : {LatticeKind::Planar, LatticeKind::Shells}) {
+        FrameWork works[2];
+        double ms[2] = {};
+        for (const int k : {0, 1}) {
+            Settings settings = settingsOf(methods()[k]); // slices, and 16 layers a plane
+            settings.lattice = kind;
+            settings.form = SegmentForm::Unrolled;
+            const Result<FrameWork> work = workOfMillion(bench, *scene, settings, view, 0.5);
+            ASSERT_TRUE(work.has_value()) << work.error().detail;
+            const auto terms = modelledOn(*findGpuRates("g71"), bench, *scene, settings, *work);
+            ASSERT_TRUE(terms.has_value() && terms->has_value());
+            works[k] = *work;
+            ms[k] = (*terms)->frameMs;
+        }
+        EXPECT_EQ(works[0].pixels, 1e6);
+        EXPECT_EQ(works[0].rays, 0.5e6);
+        EXPECT_GT(works[0].fragments, 8.0 * works[1].fragments);
+        EXPECT_GT(works[0].layers, 0.0);
+        EXPECT_GT(ms[0], 2.0 * ms[1]) << name(kind);
+    }
 }
 
 TEST_F(StabilityTest, APixelsOwnBoundTellsPicturesOfDifferentViewsApart) {

@@ -269,6 +269,21 @@ TEST(FramePlan, TheRatioNeverMovesTheLattice) {
     }
 }
 
+/// Slices of a planar lattice would be cheaper on a phone, but swim; and ratios are compared.
+TEST(FramePlan, AutoGoesByDeviceForTheLatticeAndNotByRatio) {
+    for (const int layersPerPlane : {1, 2, 16, 444}) {
+        const Settings settings{.layersPerPlane = layersPerPlane};
+        const FramePlan headset = planned(settings);
+        EXPECT_EQ(headset.lattice.kind, LatticeKind::Shells) << layersPerPlane;
+        EXPECT_NE(reasonFor(headset, "shells lattice")->why.find("a head turns"),
+                  std::string::npos);
+        const FramePlan software = planned(settings, boneFacts(), kSoftware);
+        EXPECT_EQ(software.lattice.kind, LatticeKind::Planar) << layersPerPlane;
+        EXPECT_NE(reasonFor(software, "planar lattice")->why.find("a software driver"),
+                  std::string::npos);
+    }
+}
+
 TEST(FramePlan, SpacingAndTotalGiveTheSameLattice) {
     const FramePlan bySpacing = planned({.layerSpacingVoxels = 1.0});
     EXPECT_EQ(bySpacing.lattice, (Lattice{LatticeKind::Shells, 444, 1.0}));

@@ -4,10 +4,11 @@ namespace slabcast {
 
 namespace {
 
-/// With shells all layers are of one length, so their opacity lies in the table, and a layer takes
-/// no exponential. By phones' compilers (perf/mobile) that is the cheaper text on a Mali, and on an
-/// Adreno where nothing cuts rays; where something does, its text is an eighth longer there, but
-/// few segments run the part that cuts. The software driver draws planar layers a little faster.
+/// Shells stay where they are when a head turns; planar layers swim by as much as they err. By the
+/// model of phones, 16 planar layers a plane are no better for what they cost, and slices, which
+/// are cheaper planar where faces cut rays, are dear in any case (perf/README.md, "Planar layers or
+/// shells"). By the ratio it does not go: that never moves a sample, so that ratios can be
+/// compared. The software driver draws planar layers a little faster.
 LatticeKind latticeFor(const gl::Caps& caps) {
     return caps.isSoftware ? LatticeKind::Planar : LatticeKind::Shells;
 }
