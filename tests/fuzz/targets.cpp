@@ -59,8 +59,9 @@ void transfer(std::string_view text) {
 }
 
 void editScript(std::string_view text) {
-    const auto byName = [](const std::string&) {
-        return Result<TransferFunction>(TransferFunction{});
+    const auto byName = [](const std::string&) { // sound, as what presets and files give
+        const TransferPoint none{.value = 0.0}, half{.value = 100.0, .opacity = 0.5};
+        return Result<TransferFunction>(TransferFunction{.points = {none, half}});
     };
     sound(parseEditScript(text, "fuzzed", byName, subject()));
 }
