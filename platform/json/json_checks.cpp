@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/number_text.h"
+#include "core/base/printable.h"
 
 namespace slabcast {
 
@@ -24,7 +25,8 @@ tl::unexpected<Complaint> complain(std::string at, std::string what) {
 }
 
 std::string said(const Complaint& complaint) {
-    return complaint.at + (complaint.at.empty() ? "" : ": ") + complaint.what;
+    // Both quote keys and texts of the file.
+    return withoutControls(complaint.at + (complaint.at.empty() ? "" : ": ") + complaint.what);
 }
 
 std::string inside(const std::string& at, std::string_view key) {

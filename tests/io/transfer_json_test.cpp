@@ -73,6 +73,7 @@ TEST(TransferJson, everyErrorNamesItsPath) {
         {with("\"opacity\": 0.5", "\"opacity\": 0.5, \"opaque\": 1"),
          "points[1].opaque: unknown key"},
         {with("\"name\"", "\"nmae\""), "nmae: unknown key"},
+        {with("\"name\"", "\"na\\nme\""), "na?me: unknown key"}, // one line
         {with("\"CT bone\"", "7"), "name: is number, expected a text"},
         {with("2.0", "0"), "opacityUnitMm: 0 is outside"},
         {with("2.0", "\"mm\""), "opacityUnitMm: is string"},

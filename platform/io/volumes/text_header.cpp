@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/printable.h"
 #include "platform/io/base/parse_text.h"
 
 namespace slabcast {
@@ -270,10 +271,7 @@ tl::unexpected<Error> unreadable(const Path& path, std::string_view why) {
 
 std::string printable(std::string_view text) {
     constexpr std::size_t kMost = 60;
-    std::string shown(text.substr(0, kMost));
-    for (char& c : shown) {
-        c = static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c;
-    }
+    const std::string shown = withoutControls(text.substr(0, kMost));
     return text.size() > kMost ? shown + "..." : shown;
 }
 
