@@ -196,7 +196,7 @@ Result<void> Scene::State::provideLook(const Needs& needs) {
 /// They are of the texels and no look, but for a floor so high that it needs a wider scale.
 Result<void> Scene::State::provideNormals(bool needed) {
     constexpr double kSteepestInFloors = 100.0;
-    provided->normals = needed;
+    provided->normals = false; // until they are there
     if (!needed) {
         normals.reset();
         return {};
@@ -204,15 +204,16 @@ Result<void> Scene::State::provideNormals(bool needed) {
     const double floor = look.shading.gradientFloorPerMm;
     const double wanted = std::max(kSteepestInFloors * defaultGradientFloorPerMm(), 2.0 * floor);
     const double steepest = wanted > 0.0 ? wanted : 1.0; // of constant data, which has no gradient
-    if (normals && normals->steepestPerMm == steepest) {
-        return {};
+    if (!normals || normals->steepestPerMm != steepest) {
+        normals.reset(); // before the next are made: two may not fit
+        if (texels->data.empty()) {
+            return fail(ErrorCode::InvalidArgument, kTexelsAreGone);
+        }
+        normals =
+            std::make_shared<const NormalTexels>(bakeNormals(*texels, geometry, steepest, floor));
+        normalsGeneration = nextGeneration();
     }
-    if (texels->data.empty()) {
-        return fail(ErrorCode::InvalidArgument, kTexelsAreGone);
-    }
-    normals.reset(); // before the next are made: two may not fit
-    normals = std::make_shared<const NormalTexels>(bakeNormals(*texels, geometry, steepest, floor));
-    normalsGeneration = nextGeneration();
+    provided->normals = true;
     return {};
 }
 

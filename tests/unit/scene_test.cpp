@@ -140,6 +140,7 @@ TEST(Scene, NormalsAreOfTheTexelsAndOutliveALook) {
     scene.releaseTexels();
     needs.normals = true;
     EXPECT_EQ(codeOf(scene.provide(needs)), ErrorCode::InvalidArgument);
+    EXPECT_FALSE(scene.provides(needs));
 }
 
 TEST(Scene, LightThatIsBakedInIsClassifiedAnew) {
