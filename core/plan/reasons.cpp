@@ -31,8 +31,8 @@ constexpr ReasonWords kWords[] = {
      "auto: layers of equal view depth; a software driver draws them faster than shells, and they "
      "swim when a head turns"},
     {ReasonId::ShellsLatticeHere, "shells lattice",
-     "auto: layers of equal distance from the eye stay where they are when a head turns, and are of "
-     "one length, whose opacity need not be made along every ray"},
+     "auto: layers of equal distance from the eye stay where they are when a head turns, and are "
+     "of one length, whose opacity need not be made along every ray"},
     {ReasonId::Jitter, "jitter",
      "each ray's layers are moved by up to half a layer: grain, not bands"},
     {ReasonId::RatioAsked, "ratio {ratio 0}", "asked for"},
