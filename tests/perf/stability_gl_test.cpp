@@ -143,7 +143,7 @@ TEST_F(StabilityTest, APhonesModelCountsFragmentsAndLayers) {
         EXPECT_EQ(works[0].rays, 0.5e6);
         EXPECT_GT(works[0].fragments, 8.0 * works[1].fragments);
         EXPECT_GT(works[0].layers, 0.0);
-        EXPECT_GT(ms[0], 2.0 * ms[1]) << name(kind);
+        EXPECT_GT(ms[0], ms[1]) << name(kind); // by how much is the committed costs' matter
     }
 }
 
