@@ -231,6 +231,7 @@ int textOutOfPlace(const ShaderVariant& variant) {
         bool needed;
     } entries[] = {{"skipTexels", variant.skip != SkipForm::None},
                    {"gradientRow[0].xyz", variant.shaded && variant.normals == Normals::Computed},
+                   {"normalTexels", variant.normals == Normals::Baked},
                    {"texelFetch(volumeTexels", variant.exactField},
                    {"alpha > viewport.w", variant.terminates},
                    {"work1", variant.counts}};

@@ -137,11 +137,13 @@ protected:
         Appearance look{.tf = randomTransfer(random, highest), .classification = classification};
         if (shaded) {
             look.shading = ShadingParameters{};
+            look.normals = seed % 2 == 0 ? Normals::Computed : Normals::Baked;
         }
         Scene scene = makeScene(volume, look, {.structure = SkipStructure::None}, exact);
         Settings settings = randomSettings(random);
         settings.classification = classification;
         settings.shaded = shaded;
+        settings.normals = look.normals;
         if (shaded) { // seven fields per sample
             settings.layerSpacingVoxels = std::max(settings.layerSpacingVoxels, 0.5);
         }

@@ -475,7 +475,7 @@ TEST(FramePlan, BakedTexelsNeedNeitherGradientsNorFetches) {
 
 TEST(FramePlan, BakedNormalsGoWithWhatIsLitSampleBySampleAndTellTheirError) {
     SceneFacts facts = boneFacts();
-    facts.normals = {.meanDegrees = 4.25, .mostOf95Degrees = 11.5, .places = 7};
+    facts.normals = {.meanDegrees = 4.25, .percentile95Degrees = 11.5, .places = 7};
     Settings settings{.shaded = true, .normals = Normals::Baked};
     const FramePlan lit = planned(settings, facts);
     EXPECT_EQ(lit.variant.normals, Normals::Baked);

@@ -52,8 +52,9 @@ Result<void> decideClassification(const PlanInput& in, FramePlan& plan) {
     plan.variant.normals = plan.variant.shaded ? settings.normals : Normals::Computed;
     const double colourError =
         facts.visibleColorRange * preintegratedColorError(mostDepthOf(in, plan, 1));
-    because(plan, reasonOf(settings),
-            {double(way), colourError, facts.normals.meanDegrees, facts.normals.mostOf95Degrees});
+    because(
+        plan, reasonOf(settings),
+        {double(way), colourError, facts.normals.meanDegrees, facts.normals.percentile95Degrees});
     if (facts.wideTable && way == Classification::Preintegrated) {
         because(plan, ReasonId::WideTableWarning);
     }
